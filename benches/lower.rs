@@ -4,7 +4,7 @@
 
 use bramah::Request;
 use bramah::internals::compile::sort;
-use bramah::internals::lower::{Options, System, lower};
+use bramah::internals::lower::{ExecutableSystem, LoweringOptions, lower};
 use bramah::internals::structure::Dae;
 use bramah::world::MemoryWorld;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -83,7 +83,7 @@ fn lowering(c: &mut Criterion) {
         for native in [false, true] {
             let id = BenchmarkId::new(way(native), sections);
             group.bench_function(id, |b| {
-                b.iter(|| lower(black_box(dae.clone()), &Options { native, ..Options::default() }))
+                b.iter(|| lower(black_box(dae.clone()), &LoweringOptions { native, ..LoweringOptions::default() }))
             });
         }
     }
@@ -93,13 +93,13 @@ fn kernels(c: &mut Criterion) {
     for sections in [10, 1000] {
         let dae = line(sections);
         for native in [false, true] {
-            let system = lower(dae.clone(), &Options { native, ..Options::default() });
+            let system = lower(dae.clone(), &LoweringOptions { native, ..LoweringOptions::default() });
             evaluate(c, &system, &format!("{}/{sections}", way(native)));
         }
     }
 }
 
-fn evaluate(c: &mut Criterion, system: &System, name: &str) {
+fn evaluate(c: &mut Criterion, system: &ExecutableSystem, name: &str) {
     let n = system.columns.len();
     let mut values = system.layout.values();
     system.evaluate_parameters(&mut values, &[]);

@@ -5,10 +5,10 @@
 #![allow(clippy::print_stdout, clippy::disallowed_methods, reason = "an example is asked and shows what it found")]
 
 use bramah::Request;
-use bramah::internals::analysis::Tangent;
+use bramah::internals::analysis::TangentModel;
 use bramah::internals::compile::{CompiledModel, compile};
 use bramah::internals::expr::VarId;
-use bramah::internals::lower::Options;
+use bramah::internals::lower::LoweringOptions;
 use bramah::internals::solve::{Control, Settings, signals, simulate};
 use bramah::results::Trajectory;
 use bramah::world::MemoryWorld;
@@ -52,7 +52,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let tolerance: f64 = arguments.next().map_or(Ok(1e-9), |a| a.parse())?;
     let world = MemoryWorld::single("empty.mo", "");
     let request = Request { source: class.clone().into(), ..Request::default() };
-    let model = compile(&world, &request, &Options::default()).value.ok_or("the class does not compile")?;
+    let model = compile(&world, &request, &LoweringOptions::default()).value.ok_or("the class does not compile")?;
     let id = |name: &str| {
         let place = model.flat.variables.iter().position(|v| v.name == name).ok_or(format!("no {name}"))?;
         Ok::<VarId, Box<dyn Error>>(VarId(u32::try_from(place)?))
@@ -66,7 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let settings =
         Settings { wanted, event_rows: false, tolerance, ..Settings::from_experiment(&model.dae.experiment) };
     let (plain, _) = timed(|| run(&model, &settings, None))?;
-    let tangent = Tangent::new(&model.flat, &moved)?;
+    let tangent = TangentModel::new(&model.flat, &moved)?;
     let cells: Vec<VarId> = (0..=moved.len()).flat_map(|_| settings.wanted.iter().copied()).collect();
     let (starts, asked) = timed(|| tangent.starts(&settings, &[]))?;
     let with = Settings { tangents: Some(asked), ..settings.clone() };

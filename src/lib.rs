@@ -107,7 +107,7 @@ pub use bramah_syntax::diag::{Code, Diagnostic, Error, Severity, Sources};
 #[doc(inline)]
 pub use bramah_analysis::{
     Analyze,
-    identify::{Asked as IdentifyOptions, Identified, Method as IdentifyMethod, identify, identify_as},
+    identify::{Identified, IdentifyMethod, IdentifyOptions, identify, identify_as},
     sensitivity::Sensitivity,
 };
 #[cfg(feature = "gap")]

@@ -12,11 +12,11 @@ mod benches;
 
 use benches::Bench;
 use bramah::Interpolation;
-use bramah::internals::analysis::identify::{Identification, Method, Problem};
+use bramah::internals::analysis::identify::{Identification, IdentificationProblem, IdentifyMethod};
 use bramah::internals::compile::compile;
-use bramah::internals::diag::{Checked, Diagnostic, Sources};
-use bramah::internals::lower::Options;
-use bramah::internals::study::{Recording, Role, Study};
+use bramah::internals::diag::{Diagnostic, Sources, StageResult};
+use bramah::internals::lower::LoweringOptions;
+use bramah::internals::study::{Recording, RecordingRole, Study};
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use std::error::Error;
@@ -78,7 +78,7 @@ fn noisy(bench: &Bench, clean: &[Vec<f64>], inherited: f64, dice: &mut Dice) -> 
     };
     Recording {
         file: "bench.csv".to_owned(),
-        role: Role::Train,
+        role: RecordingRole::Train,
         times: times(bench),
         inputs: bench.inputs.iter().map(|i| i.values.clone()).collect(),
         signals: clean.iter().map(&mut signal).collect(),
@@ -90,7 +90,7 @@ fn said(diagnostics: Vec<Diagnostic>) -> String {
     diagnostics.iter().map(|d| d.message.clone()).collect::<Vec<_>>().join("\n")
 }
 
-fn checked<T>(it: Checked<T>) -> Result<T, String> {
+fn checked<T>(it: StageResult<T>) -> Result<T, String> {
     it.value.ok_or_else(|| said(it.diagnostics))
 }
 
@@ -108,14 +108,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut sources = Sources::default();
     let study = checked(Study::read(&world, Path::new("study.toml"), &mut sources))?;
     let request: Request = study.request();
-    let model = compile(&world, &request, &Options::default()).value.ok_or("the model is wrong")?;
+    let model = compile(&world, &request, &LoweringOptions::default()).value.ok_or("the model is wrong")?;
     let bound = checked(study.bind(&model.flat))?;
     let clean = clean(&bench)?;
     let mut inside = vec![0u32; bench.truth.len()];
     for _ in 0..repetitions {
         let train: Vec<Recording> = (0..recordings).map(|_| noisy(&bench, &clean, inherited, &mut dice)).collect();
-        let problem = Problem::new(&model, &bound, &train).map_err(said)?;
-        let found = Identification::new(&problem, &train, Method::Output).map_err(|d| d.message)?;
+        let problem = IdentificationProblem::new(&model, &bound, &train).map_err(said)?;
+        let found = Identification::new(&problem, &train, IdentifyMethod::Output).map_err(|d| d.message)?;
         let fit = found.fit().map_err(|d| d.message)?;
         for (j, (_, truth)) in bench.truth.iter().enumerate() {
             let (low, high) = fit.interval(&problem, j);

@@ -3,7 +3,7 @@
 use super::run;
 use super::shell::{Page, code, up};
 use bramah::Simulation;
-use bramah::internals::diag::render::{Format, render};
+use bramah::internals::diag::render::{DiagnosticFormat, render};
 use bramah::internals::plot::svg::escape;
 use pulldown_cmark::{CodeBlockKind, CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, html};
 use std::collections::BTreeMap;
@@ -244,6 +244,6 @@ fn circuit(
 fn said(text: &str, code: &str) -> Result<String, String> {
     let outcome = Simulation::from_text(text).and_then(|s| s.run());
     let Err(error) = outcome else { return Err(format!("it runs, and should say {code}")) };
-    let words = render(&error.sources, &error.diagnostics, Format::Human, 100, false);
+    let words = render(&error.sources, &error.diagnostics, DiagnosticFormat::Human, 100, false);
     if words.contains(code) { Ok(words) } else { Err(format!("it should say {code}, and says\n{words}")) }
 }

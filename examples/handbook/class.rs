@@ -1,7 +1,7 @@
 //! The page of a class: box, words, ports, parameters, equations, an example with its picture, the source.
 
 use super::facts::{self, Facts};
-use super::library::{self, Catalogue, Given, Member};
+use super::library::{self, Catalogue, Given, MemberComponent};
 use super::run::{self, Runs};
 use super::shell::{Page, code, up};
 use super::tables;
@@ -9,7 +9,7 @@ use super::{equations, icon};
 use bramah::internals::plot::network::symbols::symbol;
 use bramah::internals::plot::svg::escape;
 use bramah::internals::resolve::{ClassId, Library};
-use bramah::internals::syntax::ast::{Causality, Class, ClassBody, ClassKind, ExprKind, Variability};
+use bramah::internals::syntax::ast::{CausalityPrefix, Class, ClassBody, ClassKind, ExprKind, VariabilityPrefix};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -196,7 +196,7 @@ impl<'a> Press<'_, 'a> {
         if out.is_empty() { out } else { format!("<dl class=\"facts\">{out}</dl>") }
     }
 
-    fn ports(&mut self, members: &[Member<'a>]) -> Vec<icon::Port> {
+    fn ports(&mut self, members: &[MemberComponent<'a>]) -> Vec<icon::Port> {
         let mut out = Vec::new();
         for member in members.iter().filter(|m| !m.protected) {
             if let Some(connector) = self.connector(member) {
@@ -211,21 +211,21 @@ impl<'a> Press<'_, 'a> {
     }
 
     /// The full name of a component's class when that is a connector.
-    pub fn connector(&mut self, member: &Member<'a>) -> Option<String> {
+    pub fn connector(&mut self, member: &MemberComponent<'a>) -> Option<String> {
         let id = library::resolve(self.library, member.owner, &member.component.class)?;
         let is = matches!(self.library.class(id).kind, ClassKind::Connector { .. });
         is.then(|| self.library.full_name(id))
     }
 
-    fn declared(&mut self, id: ClassId, members: &[Member<'a>], given: &Given<'a>) -> String {
-        let mut groups: [Vec<&Member<'a>>; 4] = Default::default();
+    fn declared(&mut self, id: ClassId, members: &[MemberComponent<'a>], given: &Given<'a>) -> String {
+        let mut groups: [Vec<&MemberComponent<'a>>; 4] = Default::default();
         for member in members.iter().filter(|m| !m.protected) {
             let c = member.component;
-            let plain_input = c.prefix.causality == Some(Causality::Input);
+            let plain_input = c.prefix.causality == Some(CausalityPrefix::Input);
             let at = match c.prefix.variability {
-                Some(Variability::Parameter | Variability::Constant) => 1,
+                Some(VariabilityPrefix::Parameter | VariabilityPrefix::Constant) => 1,
                 _ if self.connector(member).is_some() || plain_input => 0,
-                _ if c.prefix.causality == Some(Causality::Output) => 0,
+                _ if c.prefix.causality == Some(CausalityPrefix::Output) => 0,
                 _ if c.prefixes.replaceable || facts::is_part(self.library, member) => 2,
                 _ => 3,
             };
@@ -357,6 +357,6 @@ fn kind(class: &Class) -> String {
 }
 
 /// Attributes of a declaration that tables show.
-pub fn facts_of<'a>(press: &mut Press<'_, 'a>, member: &Member<'a>) -> Facts {
+pub fn facts_of<'a>(press: &mut Press<'_, 'a>, member: &MemberComponent<'a>) -> Facts {
     facts::of(press.library, member)
 }

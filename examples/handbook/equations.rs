@@ -3,7 +3,7 @@
 use super::math;
 use bramah::internals::diag::Span;
 use bramah::internals::plot::svg::escape;
-use bramah::internals::syntax::ast::{Equation, EquationKind, Expr, ExprKind, Iterator, Statement, StatementKind};
+use bramah::internals::syntax::ast::{Equation, EquationKind, Expr, ExprKind, ForIndex, Statement, StatementKind};
 
 /// Longer equations are cut into lines of about so many characters.
 const ROOM: usize = 84;
@@ -137,7 +137,7 @@ fn line(content: &str, description: Option<&str>) -> String {
 }
 
 fn alternatives<'a>(
-    branches: impl std::iter::Iterator<Item = (&'a Expr, String)>,
+    branches: impl Iterator<Item = (&'a Expr, String)>,
     otherwise: &str,
     first: &str,
     next: &str,
@@ -158,7 +158,7 @@ fn alternatives<'a>(
     out
 }
 
-fn repeated(iterators: &[Iterator], body: &str) -> String {
+fn repeated(iterators: &[ForIndex], body: &str) -> String {
     if body.is_empty() {
         return String::new();
     }

@@ -1,8 +1,10 @@
 //! Facts about declarations and texts: units and bounds, and what a documentation says of limits and sources.
 
-use super::library::{self, Member};
+use super::library::{self, MemberComponent};
 use bramah::internals::resolve::Library;
-use bramah::internals::syntax::ast::{Argument, ArgumentKind, ClassBody, ClassKind, ExprKind, Modification};
+use bramah::internals::syntax::ast::{
+    ClassBody, ClassKind, ExprKind, Modification, ModificationArgument, ModificationArgumentKind,
+};
 use bramah::internals::syntax::symbol::Symbol;
 
 /// Attributes of a declared quantity, as written; empty where there are none.
@@ -19,7 +21,7 @@ pub struct Facts {
 }
 
 /// Attributes of a component: its own, then those of its type and what that is made from.
-pub fn of(library: &mut Library<'_>, member: &Member<'_>) -> Facts {
+pub fn of(library: &mut Library<'_>, member: &MemberComponent<'_>) -> Facts {
     let mut facts = Facts::default();
     take(library, member.component.modification.as_ref(), &mut facts);
     let mut class = library::resolve(library, member.owner, &member.component.class);
@@ -48,8 +50,8 @@ fn take(library: &Library<'_>, modification: Option<&Modification>, facts: &mut 
     }
 }
 
-fn attribute(library: &Library<'_>, argument: &Argument) -> Option<(Symbol, String)> {
-    let ArgumentKind::Modify { path, modification: Some(m), .. } = &argument.kind else { return None };
+fn attribute(library: &Library<'_>, argument: &ModificationArgument) -> Option<(Symbol, String)> {
+    let ModificationArgumentKind::Modify { path, modification: Some(m), .. } = &argument.kind else { return None };
     let value = m.value.as_ref()?;
     let text = match &value.kind {
         ExprKind::String(text) => text.to_string(),
@@ -59,7 +61,7 @@ fn attribute(library: &Library<'_>, argument: &Argument) -> Option<(Symbol, Stri
 }
 
 /// Whether a component is a part with equations of its own, not a quantity.
-pub fn is_part(library: &mut Library<'_>, member: &Member<'_>) -> bool {
+pub fn is_part(library: &mut Library<'_>, member: &MemberComponent<'_>) -> bool {
     let id = library::resolve(library, member.owner, &member.component.class);
     id.is_some_and(|id| matches!(library.class(id).kind, ClassKind::Model | ClassKind::Block | ClassKind::Class))
 }

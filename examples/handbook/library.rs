@@ -1,8 +1,10 @@
 //! The classes of `components/` and `models/` by name, what they inherit, and who uses whom.
 
-pub use bramah::internals::resolve::names::{Member, bases, body, lineage, named, resolve};
+pub use bramah::internals::resolve::names::{MemberComponent, bases, body, lineage, named, resolve};
 use bramah::internals::resolve::{ClassId, Library, names, nested_classes};
-use bramah::internals::syntax::ast::{Argument, ArgumentKind, Class, ClassBody, ClassKind, ElementKind, Expr, Path};
+use bramah::internals::syntax::ast::{
+    Class, ClassBody, ClassKind, ElementKind, Expr, ModificationArgument, ModificationArgumentKind, Path,
+};
 use bramah::internals::syntax::symbol::Symbol;
 use std::collections::BTreeMap;
 
@@ -108,10 +110,10 @@ fn uses(library: &mut Library<'_>, id: ClassId, example: &str, catalogue: &mut C
 }
 
 /// The class that a modifier puts in.
-fn redeclared(argument: &Argument) -> Option<&Path> {
+fn redeclared(argument: &ModificationArgument) -> Option<&Path> {
     match &argument.kind {
-        ArgumentKind::Component(c) => Some(&c.class),
-        ArgumentKind::Class(c) => match &c.body {
+        ModificationArgumentKind::Component(c) => Some(&c.class),
+        ModificationArgumentKind::Class(c) => match &c.body {
             ClassBody::Short { base, .. } => Some(base),
             _ => None,
         },
@@ -129,7 +131,9 @@ pub fn annotation<'a>(class: &'a Class, path: &[&str]) -> Option<&'a bramah::int
     let mut at = class.annotation.as_ref()?;
     for name in path {
         at = at.arguments.iter().find_map(|a| match &a.kind {
-            ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == *name => Some(m),
+            ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == *name => {
+                Some(m)
+            }
             _ => None,
         })?;
     }
@@ -137,7 +141,7 @@ pub fn annotation<'a>(class: &'a Class, path: &[&str]) -> Option<&'a bramah::int
 }
 
 /// All components of a class, its own first, and the values that `extends` clauses give them.
-pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> (Vec<Member<'a>>, Given<'a>) {
+pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> (Vec<MemberComponent<'a>>, Given<'a>) {
     let mut given = Given::new();
     for owner in lineage(library, id) {
         let Some(body) = body(library.class(owner)) else { continue };
@@ -150,9 +154,9 @@ pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> (Vec<Member<'a>>, 
     (names::members(library, id), given)
 }
 
-fn note_given<'a>(arguments: impl Iterator<Item = &'a Argument>, given: &mut Given<'a>) {
+fn note_given<'a>(arguments: impl Iterator<Item = &'a ModificationArgument>, given: &mut Given<'a>) {
     for argument in arguments {
-        if let ArgumentKind::Modify { path, modification: Some(m), .. } = &argument.kind
+        if let ModificationArgumentKind::Modify { path, modification: Some(m), .. } = &argument.kind
             && let (1, Some(value)) = (path.parts.len(), &m.value)
         {
             given.entry(path.parts[0].name.as_str()).or_insert((value, argument.final_));

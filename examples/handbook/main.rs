@@ -19,8 +19,8 @@ mod shell;
 mod tables;
 
 use bramah::internals::plot::svg::escape;
-use bramah::internals::resolve::{Library, Trees};
-use bramah::internals::shipped::Shipped;
+use bramah::internals::resolve::{Library, SyntaxArena};
+use bramah::internals::shipped::ShippedWorld;
 use bramah::world::World;
 use library::{Catalogue, PACKAGES};
 use shell::Page;
@@ -68,9 +68,9 @@ fn write(out: &Path, files: &BTreeMap<String, Vec<u8>>) -> Result<(), String> {
 
 /// Makes all pages; every example is run on the way.
 fn make(root: &Path) -> Result<Handbook, String> {
-    let trees = Trees::new();
-    let shipped = Shipped;
-    let roots = Shipped::roots().map(|r| (&shipped as &dyn World, r)).to_vec();
+    let trees = SyntaxArena::new();
+    let shipped = ShippedWorld;
+    let roots = ShippedWorld::roots().map(|r| (&shipped as &dyn World, r)).to_vec();
     let mut library = Library::new(&trees, roots);
     let catalogue = library::catalogue(&mut library);
     let chapters = book::chapters(&root.join("docs"))?;

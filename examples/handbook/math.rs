@@ -1,7 +1,7 @@
 //! Expressions as MathML: fractions, powers, roots and indices; names stay the names of the source.
 
 use bramah::internals::plot::svg::escape;
-use bramah::internals::syntax::ast::{BinaryOp, Expr, ExprKind, Iterator, Reference, Subscript, UnaryOp};
+use bramah::internals::syntax::ast::{BinaryOp, ComponentReference, Expr, ExprKind, ForIndex, Subscript, UnaryOp};
 use bramah::results::number;
 
 /// Greek letters that names may begin with. `w` and `V` are left alone: the page shows what the source says.
@@ -83,7 +83,7 @@ pub fn lines(e: &Expr, room: usize) -> Vec<String> {
 }
 
 /// A call of a function of a package, with a new line before an argument that has no room.
-fn call_lines(function: &Reference, args: &[Expr], room: usize) -> Vec<String> {
+fn call_lines(function: &ComponentReference, args: &[Expr], room: usize) -> Vec<String> {
     let name: Vec<&str> = function.parts.iter().map(|p| p.name.name.as_str()).collect();
     let mut out = vec![format!("{}<mo stretchy=\"false\">(</mo>", upright(&name.join(".")))];
     let mut used = name_width(function) + 1;
@@ -139,7 +139,7 @@ pub fn width(e: &Expr) -> usize {
     }
 }
 
-fn name_width(r: &Reference) -> usize {
+fn name_width(r: &ComponentReference) -> usize {
     let within = |s: &Subscript| match s {
         Subscript::All(_) => 3,
         Subscript::Expr(e) => 2 + width(e),
@@ -285,7 +285,7 @@ fn bracketed(args: &[Expr], named: &[(bramah::internals::syntax::ast::Ident, Exp
 }
 
 fn call(
-    function: &Reference,
+    function: &ComponentReference,
     args: &[Expr],
     named: &[(bramah::internals::syntax::ast::Ident, Expr)],
 ) -> (Level, String) {
@@ -307,7 +307,7 @@ fn derivative(x: &Expr) -> String {
     )
 }
 
-fn comprehension(function: Option<&Reference>, body: &Expr, iterators: &[Iterator]) -> (Level, String) {
+fn comprehension(function: Option<&ComponentReference>, body: &Expr, iterators: &[ForIndex]) -> (Level, String) {
     let over = iterators.iter().map(iterator).collect::<Vec<_>>().join("<mo>,</mo>");
     let is_sum = function.is_some_and(|f| f.parts.len() == 1 && f.parts[0].name.name == "sum");
     if is_sum {
@@ -325,7 +325,7 @@ fn comprehension(function: Option<&Reference>, body: &Expr, iterators: &[Iterato
 }
 
 /// `i ∈ 1:n`, as in loops.
-pub fn iterator(i: &Iterator) -> String {
+pub fn iterator(i: &ForIndex) -> String {
     let name = name(i.name.name.as_str());
     match &i.range {
         Some(range) => format!("{name}<mo>∈</mo>{}", write(range, Level::Whole)),
@@ -333,7 +333,7 @@ pub fn iterator(i: &Iterator) -> String {
     }
 }
 
-fn reference(r: &Reference) -> String {
+fn reference(r: &ComponentReference) -> String {
     let parts: Vec<String> =
         r.parts.iter().map(|p| format!("{}{}", name(p.name.name.as_str()), indices(&p.subscripts))).collect();
     if parts.len() == 1 { parts[0].clone() } else { row(&parts.join("<mo lspace=\"0\" rspace=\"0\">.</mo>")) }

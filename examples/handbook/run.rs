@@ -1,9 +1,9 @@
 //! Runs examples and draws what a class does in them.
 
 use bramah::internals::plot::figure::Figure;
-use bramah::internals::plot::select::{Choice, Run, figure};
+use bramah::internals::plot::select::{FigureOptions, LabelledTrajectory, figure};
 use bramah::internals::plot::svg;
-use bramah::results::{Globs, Trajectory};
+use bramah::results::{GlobPatterns, Trajectory};
 use bramah::{Code, Error, Simulation};
 use std::collections::BTreeMap;
 
@@ -57,7 +57,7 @@ pub fn picture(trajectory: &Trajectory, at: &str) -> Option<String> {
     if chosen.is_empty() {
         return None;
     }
-    draw(trajectory, &Globs::new(&chosen)).map(|f| svg::write(&few(f)))
+    draw(trajectory, &GlobPatterns::new(&chosen)).map(|f| svg::write(&few(f)))
 }
 
 /// What a whole circuit does: its own variables, else those of its components.
@@ -68,12 +68,12 @@ pub fn overview(trajectory: &Trajectory) -> Option<String> {
         chosen.map(|(s, _)| s.name.as_str()).collect()
     };
     let names = [moving(0), moving(1)].into_iter().find(|names| !names.is_empty())?;
-    draw(trajectory, &Globs::new(&names)).map(|f| svg::write(&few(f)))
+    draw(trajectory, &GlobPatterns::new(&names)).map(|f| svg::write(&few(f)))
 }
 
-fn draw(trajectory: &Trajectory, variables: &Globs) -> Option<Figure> {
-    let choice = Choice { variables: variables.clone(), ..Choice::default() };
-    figure(&[Run { label: "", trajectory }], &choice).ok().map(|s| s.figure)
+fn draw(trajectory: &Trajectory, variables: &GlobPatterns) -> Option<Figure> {
+    let choice = FigureOptions { variables: variables.clone(), ..FigureOptions::default() };
+    figure(&[LabelledTrajectory { label: "", trajectory }], &choice).ok().map(|s| s.figure)
 }
 
 fn few(mut figure: Figure) -> Figure {
@@ -93,7 +93,8 @@ fn moves(column: &[f64]) -> bool {
 /// What is wrong with the circuit, or that there is no such variable.
 pub fn circuit(text: &str, variables: &[&str], x: Option<&str>) -> Result<String, String> {
     let outcome = Simulation::from_text(text).and_then(|s| s.run()).map_err(|e: Error| e.to_string())?;
-    let choice = Choice { variables: Globs::new(variables), x: x.map(str::to_owned), ..Choice::default() };
-    let drawn = figure(&[Run { label: "", trajectory: &outcome.trajectory }], &choice)?;
+    let choice =
+        FigureOptions { variables: GlobPatterns::new(variables), x: x.map(str::to_owned), ..FigureOptions::default() };
+    let drawn = figure(&[LabelledTrajectory { label: "", trajectory: &outcome.trajectory }], &choice)?;
     Ok(svg::write(&drawn.figure))
 }

@@ -1,15 +1,15 @@
 //! Tables of ports, parameters, replaceable parts and variables.
 
 use super::class::{Press, facts_of};
-use super::library::{self, Given, Member};
+use super::library::{self, Given, MemberComponent};
 use super::{facts, math};
 use bramah::internals::plot::svg::escape;
 use bramah::internals::resolve::ClassId;
-use bramah::internals::syntax::ast::{Causality, Component, Subscript, Variability};
+use bramah::internals::syntax::ast::{CausalityPrefix, ComponentDeclaration, Subscript, VariabilityPrefix};
 use std::fmt::Write as _;
 
 /// The name of a component with its dimensions, as code.
-fn name(press: &Press<'_, '_>, component: &Component) -> String {
+fn name(press: &Press<'_, '_>, component: &ComponentDeclaration) -> String {
     let mut out = component.name.name.as_str().to_owned();
     if !component.subscripts.is_empty() {
         let dimension = |s: &Subscript| match s {
@@ -22,11 +22,11 @@ fn name(press: &Press<'_, '_>, component: &Component) -> String {
     format!("<code>{}</code>", escape(&out))
 }
 
-fn said(component: &Component) -> String {
+fn said(component: &ComponentDeclaration) -> String {
     escape(component.description.as_deref().unwrap_or_default())
 }
 
-fn class_link(press: &mut Press<'_, '_>, member: &Member<'_>) -> String {
+fn class_link(press: &mut Press<'_, '_>, member: &MemberComponent<'_>) -> String {
     let path = &member.component.class;
     let text = path.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".");
     match library::resolve(press.library, member.owner, path) {
@@ -39,14 +39,14 @@ fn class_link(press: &mut Press<'_, '_>, member: &Member<'_>) -> String {
     }
 }
 
-fn condition(press: &Press<'_, '_>, component: &Component) -> String {
+fn condition(press: &Press<'_, '_>, component: &ComponentDeclaration) -> String {
     component.condition.as_ref().map_or(String::new(), |c| {
         format!(" <span class=\"said\">if <code>{}</code></span>", escape(press.library.sources.text(c.span)))
     })
 }
 
 /// Connectors, inputs and outputs.
-pub fn ports<'a>(press: &mut Press<'_, 'a>, list: &[&Member<'a>]) -> String {
+pub fn ports<'a>(press: &mut Press<'_, 'a>, list: &[&MemberComponent<'a>]) -> String {
     if list.is_empty() {
         return String::new();
     }
@@ -57,8 +57,8 @@ pub fn ports<'a>(press: &mut Press<'_, 'a>, list: &[&Member<'a>]) -> String {
     for (member, unit) in list.iter().zip(&units) {
         let c = member.component;
         let role = match c.prefix.causality {
-            Some(Causality::Input) => "input ",
-            Some(Causality::Output) => "output ",
+            Some(CausalityPrefix::Input) => "input ",
+            Some(CausalityPrefix::Output) => "output ",
             None => "",
         };
         let _ = writeln!(
@@ -78,18 +78,18 @@ pub fn ports<'a>(press: &mut Press<'_, 'a>, list: &[&Member<'a>]) -> String {
 }
 
 /// Inputs and outputs of a function, in the order of a call: inherited ones come first.
-pub fn arguments<'a>(press: &mut Press<'_, 'a>, mut list: Vec<&Member<'a>>) -> String {
+pub fn arguments<'a>(press: &mut Press<'_, 'a>, mut list: Vec<&MemberComponent<'a>>) -> String {
     let mut owners: Vec<ClassId> = list.iter().map(|m| m.owner).collect();
     owners.dedup();
-    let place = |m: &&Member<'_>| owners.iter().rposition(|o| *o == m.owner);
-    list.sort_by_key(|m| (m.component.prefix.causality == Some(Causality::Output), std::cmp::Reverse(place(m))));
+    let place = |m: &&MemberComponent<'_>| owners.iter().rposition(|o| *o == m.owner);
+    list.sort_by_key(|m| (m.component.prefix.causality == Some(CausalityPrefix::Output), std::cmp::Reverse(place(m))));
     let mut rows = String::new();
     for member in list {
         let c = member.component;
         let facts = facts_of(press, member);
         let value = c.modification.as_ref().and_then(|m| m.value.as_ref());
         let value = value.map_or(String::new(), |v| default(press.library.sources.text(v.span)));
-        let role = if c.prefix.causality == Some(Causality::Output) { "result" } else { "argument" };
+        let role = if c.prefix.causality == Some(CausalityPrefix::Output) { "result" } else { "argument" };
         let _ = writeln!(
             rows,
             "<tr><td>{}</td><td class=\"fixed\">{role}</td><td>{value}</td><td class=\"num\">{}</td><td class=\"num\">{}</td><td>{}</td></tr>",
@@ -105,7 +105,12 @@ pub fn arguments<'a>(press: &mut Press<'_, 'a>, mut list: Vec<&Member<'a>>) -> S
 }
 
 /// Parameters and constants, those of bases under the base's name.
-pub fn parameters<'a>(press: &mut Press<'_, 'a>, class: ClassId, list: &[&Member<'a>], given: &Given<'a>) -> String {
+pub fn parameters<'a>(
+    press: &mut Press<'_, 'a>,
+    class: ClassId,
+    list: &[&MemberComponent<'a>],
+    given: &Given<'a>,
+) -> String {
     if list.is_empty() {
         return String::new();
     }
@@ -124,13 +129,13 @@ pub fn parameters<'a>(press: &mut Press<'_, 'a>, class: ClassId, list: &[&Member
     )
 }
 
-fn parameter<'a>(press: &mut Press<'_, 'a>, member: &Member<'a>, given: &Given<'a>) -> String {
+fn parameter<'a>(press: &mut Press<'_, 'a>, member: &MemberComponent<'a>, given: &Given<'a>) -> String {
     let c = member.component;
     let facts = facts_of(press, member);
     let own = c.modification.as_ref().and_then(|m| m.value.as_ref());
     let (value, fixed) = match given.get(c.name.name.as_str()).filter(|_| own.is_some() || !member.protected) {
         Some((value, fixed)) => (Some(*value), *fixed),
-        None => (own, c.prefix.variability == Some(Variability::Constant)),
+        None => (own, c.prefix.variability == Some(VariabilityPrefix::Constant)),
     };
     let value = value.map_or(String::new(), |v| default(press.library.sources.text(v.span)));
     let fixed = if fixed { " <span class=\"fixed\">fixed</span>" } else { "" };
@@ -165,7 +170,7 @@ fn range(facts: &facts::Facts) -> String {
 }
 
 /// Parts with equations of their own; those that can be exchanged say by what.
-pub fn parts<'a>(press: &mut Press<'_, 'a>, list: &[&Member<'a>]) -> String {
+pub fn parts<'a>(press: &mut Press<'_, 'a>, list: &[&MemberComponent<'a>]) -> String {
     if list.is_empty() {
         return String::new();
     }
@@ -201,7 +206,7 @@ pub fn parts<'a>(press: &mut Press<'_, 'a>, list: &[&Member<'a>]) -> String {
 }
 
 /// Variables that results show.
-pub fn variables<'a>(press: &mut Press<'_, 'a>, list: &[&Member<'a>]) -> String {
+pub fn variables<'a>(press: &mut Press<'_, 'a>, list: &[&MemberComponent<'a>]) -> String {
     if list.is_empty() {
         return String::new();
     }

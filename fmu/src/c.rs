@@ -1,12 +1,12 @@
 //! The C interfaces of FMI 2.0.5 and 3.0.2 (Co-Simulation, Model Exchange): pointers of the simulator made references, panics made errors.
 //! All `unsafe` of the library is here.
 //!
-//! What both have in common is a function of [`Component`]; the functions of one standard only read its arguments.
+//! What both have in common is a function of [`FmuComponent`]; the functions of one standard only read its arguments.
 
 #![allow(non_snake_case, reason = "names of the standard")]
 #![allow(unsafe_code, reason = "a C interface")]
 
-use crate::unit::{Mode, Snapshot, Unit, Went};
+use crate::unit::{CallOutcome, FmuInstance, FmuMode, FmuSnapshot};
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
@@ -16,25 +16,25 @@ const DISCARD: c_int = 2;
 const ERROR: c_int = 3;
 
 /// Where messages go.
-enum Log {
-    Two { logger: Option<Logger2>, environment: *mut c_void, name: CString },
-    Three { logger: Option<Logger3>, environment: *mut c_void },
+enum LoggerTarget {
+    Two { logger: Option<Fmi2Logger>, environment: *mut c_void, name: CString },
+    Three { logger: Option<Fmi3Logger>, environment: *mut c_void },
 }
 
-type Logger2 = unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
-type Logger3 = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
+type Fmi2Logger = unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
+type Fmi3Logger = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
 
-impl Log {
+impl LoggerTarget {
     fn say(&self, status: c_int, message: &str) {
         let category = if status == OK { c"logStatusWarning" } else { c"logStatusError" };
         let text = CString::new(message.replace('\0', " ")).unwrap_or_default();
         match self {
             // SAFETY: the simulator's own function, with the arguments that its standard fixes; the text is no format.
-            Log::Two { logger: Some(logger), environment, name } => unsafe {
+            LoggerTarget::Two { logger: Some(logger), environment, name } => unsafe {
                 logger(*environment, name.as_ptr(), status, category.as_ptr(), c"%s".as_ptr(), text.as_ptr());
             },
             // SAFETY: as above.
-            Log::Three { logger: Some(logger), environment } => unsafe {
+            LoggerTarget::Three { logger: Some(logger), environment } => unsafe {
                 logger(*environment, status, category.as_ptr(), text.as_ptr());
             },
             _ => {}
@@ -43,17 +43,17 @@ impl Log {
 }
 
 /// An instance with what C asks of it.
-struct Component {
-    unit: Unit,
-    log: Log,
+struct FmuComponent {
+    unit: FmuInstance,
+    log: LoggerTarget,
     terminated: bool,
 }
 
-impl Component {
-    fn begin(log: Log, resources: PathBuf, token: &str, kind: Mode) -> *mut c_void {
-        let made = catch_unwind(AssertUnwindSafe(|| Unit::new(&resources, token, kind)));
+impl FmuComponent {
+    fn begin(log: LoggerTarget, resources: PathBuf, token: &str, kind: FmuMode) -> *mut c_void {
+        let made = catch_unwind(AssertUnwindSafe(|| FmuInstance::new(&resources, token, kind)));
         match made.unwrap_or_else(|_| Err("this is a bug of bramah".to_owned())) {
-            Ok(unit) => Box::into_raw(Box::new(Component { unit, log, terminated: false })).cast(),
+            Ok(unit) => Box::into_raw(Box::new(FmuComponent { unit, log, terminated: false })).cast(),
             Err(why) => {
                 log.say(ERROR, &why);
                 std::ptr::null_mut()
@@ -67,7 +67,7 @@ impl Component {
         if (from - stands).abs() > 0.01 * length.abs() {
             return Err(format!("a step from {from} s, and the unit stands at {stands} s"));
         }
-        self.terminated = self.unit.step_to(from + length)? == Went::Terminated;
+        self.terminated = self.unit.step_to(from + length)? == CallOutcome::Terminated;
         for warning in self.unit.warnings() {
             self.log.say(OK, &warning);
         }
@@ -75,12 +75,12 @@ impl Component {
     }
 
     /// An event, with what it warns of.
-    fn happen(&mut self) -> Result<Happened, String> {
+    fn happen(&mut self) -> Result<FmuEventResult, String> {
         let found = self.unit.exchange(|e| e.event())?;
         for warning in self.unit.warnings() {
             self.log.say(OK, &warning);
         }
-        Ok(Happened { terminate: found.terminated.is_some(), states: found.states_changed, next: found.next })
+        Ok(FmuEventResult { terminate: found.terminated.is_some(), states: found.states_changed, next: found.next })
     }
 
     /// Numbers of the states.
@@ -111,13 +111,13 @@ impl Component {
 }
 
 /// What came of an event.
-struct Happened {
+struct FmuEventResult {
     terminate: bool,
     states: bool,
     next: Option<f64>,
 }
 
-impl Happened {
+impl FmuEventResult {
     /// In the order of both standards: once more, terminate, other nominal values, other states, a next event. One pass of
     /// a unit is its whole iteration, and nominal values stay.
     fn flags(&self) -> [bool; 5] {
@@ -142,9 +142,9 @@ unsafe fn put<T>(place: *mut T, value: T) -> Result<(), String> {
 ///
 /// # Safety
 /// `instance` is null, or comes from an instantiation of this library and is used by no other thread.
-unsafe fn with(instance: *mut c_void, act: impl FnOnce(&mut Component) -> Result<(), String>) -> c_int {
+unsafe fn with(instance: *mut c_void, act: impl FnOnce(&mut FmuComponent) -> Result<(), String>) -> c_int {
     // SAFETY: as the caller promises.
-    let Some(component) = (unsafe { instance.cast::<Component>().as_mut() }) else { return ERROR };
+    let Some(component) = (unsafe { instance.cast::<FmuComponent>().as_mut() }) else { return ERROR };
     let result = catch_unwind(AssertUnwindSafe(|| act(component)));
     match result.unwrap_or_else(|_| Err("this is a bug of bramah".to_owned())) {
         Ok(()) => OK,
@@ -238,7 +238,7 @@ unsafe fn get_state(instance: *mut c_void, place: *mut *mut c_void) -> c_int {
         with(instance, |c| {
             let snapshot = c.unit.snapshot()?;
             let Some(place) = place.as_mut() else { return Err("there is no place for the state".to_owned()) };
-            match place.cast::<Snapshot>().as_mut() {
+            match place.cast::<FmuSnapshot>().as_mut() {
                 Some(old) => *old = snapshot,
                 None => *place = Box::into_raw(Box::new(snapshot)).cast(),
             }
@@ -252,7 +252,7 @@ unsafe fn get_state(instance: *mut c_void, place: *mut *mut c_void) -> c_int {
 unsafe fn set_state(instance: *mut c_void, state: *mut c_void) -> c_int {
     // SAFETY: as the caller promises.
     unsafe {
-        with(instance, |c| match state.cast::<Snapshot>().as_ref() {
+        with(instance, |c| match state.cast::<FmuSnapshot>().as_ref() {
             Some(snapshot) => {
                 c.terminated = false;
                 c.unit.restore(snapshot)
@@ -270,7 +270,7 @@ unsafe fn free_state(place: *mut *mut c_void) -> c_int {
         if let Some(place) = place.as_mut()
             && !place.is_null()
         {
-            drop(Box::from_raw(place.cast::<Snapshot>()));
+            drop(Box::from_raw(place.cast::<FmuSnapshot>()));
             *place = std::ptr::null_mut();
         }
     }
@@ -282,9 +282,9 @@ unsafe fn free_state(place: *mut *mut c_void) -> c_int {
 unsafe fn state_size(instance: *mut c_void, state: *mut c_void, size: *mut usize) -> c_int {
     // SAFETY: as the caller promises.
     unsafe {
-        with(instance, |_| match (state.cast::<Snapshot>().as_ref(), size.as_mut()) {
+        with(instance, |_| match (state.cast::<FmuSnapshot>().as_ref(), size.as_mut()) {
             (Some(snapshot), Some(size)) => {
-                *size = Unit::bytes(snapshot).len();
+                *size = FmuInstance::bytes(snapshot).len();
                 Ok(())
             }
             _ => Err("there is no such state".to_owned()),
@@ -298,8 +298,8 @@ unsafe fn write_state(instance: *mut c_void, state: *mut c_void, bytes: *mut u8,
     // SAFETY: as the caller promises.
     unsafe {
         with(instance, |_| {
-            let Some(snapshot) = state.cast::<Snapshot>().as_ref() else { return Err("no such state".to_owned()) };
-            let written = Unit::bytes(snapshot);
+            let Some(snapshot) = state.cast::<FmuSnapshot>().as_ref() else { return Err("no such state".to_owned()) };
+            let written = FmuInstance::bytes(snapshot);
             let place = slice_mut(bytes, size);
             let Some(place) = place.get_mut(..written.len()) else { return Err("too few bytes".to_owned()) };
             place.copy_from_slice(&written);
@@ -328,16 +328,16 @@ unsafe fn read_state(instance: *mut c_void, bytes: *const u8, size: usize, place
 unsafe fn free(instance: *mut c_void) {
     if !instance.is_null() {
         // SAFETY: as the caller promises.
-        drop(catch_unwind(AssertUnwindSafe(|| unsafe { drop(Box::from_raw(instance.cast::<Component>())) })));
+        drop(catch_unwind(AssertUnwindSafe(|| unsafe { drop(Box::from_raw(instance.cast::<FmuComponent>())) })));
     }
 }
 
-fn setup(c: &mut Component, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Result<(), String> {
+fn setup(c: &mut FmuComponent, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> Result<(), String> {
     c.unit.setup(start, stop, tolerance);
     Ok(())
 }
 
-fn reset(c: &mut Component) -> Result<(), String> {
+fn reset(c: &mut FmuComponent) -> Result<(), String> {
     c.unit.reset();
     c.terminated = false;
     Ok(())
@@ -466,8 +466,8 @@ values_3! {
 
 /// `fmi2CallbackFunctions`, of which the logger is used.
 #[repr(C)]
-pub struct Callbacks2 {
-    logger: Option<Logger2>,
+pub struct Fmi2Callbacks {
+    logger: Option<Fmi2Logger>,
     allocate: *const c_void,
     free: *const c_void,
     finished: *const c_void,
@@ -492,19 +492,19 @@ pub unsafe extern "C" fn fmi2Instantiate(
     kind: c_int,
     guid: *const c_char,
     resources: *const c_char,
-    functions: *const Callbacks2,
+    functions: *const Fmi2Callbacks,
     _visible: c_int,
     _logging: c_int,
 ) -> *mut c_void {
     // SAFETY: the simulator follows the standard.
     let (name, guid, resources, functions) = unsafe { (text(name), text(guid), text(resources), functions.as_ref()) };
-    let log = Log::Two {
+    let log = LoggerTarget::Two {
         logger: functions.and_then(|f| f.logger),
         environment: functions.map_or(std::ptr::null_mut(), |f| f.environment),
         name: CString::new(name).unwrap_or_default(),
     };
-    let kind = if kind == 1 { Mode::CoSimulation } else { Mode::ModelExchange };
-    Component::begin(log, path(&resources), &guid, kind)
+    let kind = if kind == 1 { FmuMode::CoSimulation } else { FmuMode::ModelExchange };
+    FmuComponent::begin(log, path(&resources), &guid, kind)
 }
 
 /// # Safety
@@ -602,7 +602,7 @@ pub unsafe extern "C" fn fmi2GetBooleanStatus(c: *mut c_void, kind: c_int, value
 
 /// `fmi2EventInfo`
 #[repr(C)]
-pub struct EventInfo2 {
+pub struct Fmi2EventInfo {
     again: c_int,
     terminate: c_int,
     nominals: c_int,
@@ -614,14 +614,14 @@ pub struct EventInfo2 {
 /// # Safety
 /// Called as the standard says.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2NewDiscreteStates(c: *mut c_void, info: *mut EventInfo2) -> c_int {
+pub unsafe extern "C" fn fmi2NewDiscreteStates(c: *mut c_void, info: *mut Fmi2EventInfo) -> c_int {
     // SAFETY: the simulator follows the standard.
     unsafe {
         with(c, |c| {
             let found = c.happen()?;
             let [again, terminate, nominals, states, next_defined] = found.flags().map(c_int::from);
             let next = found.next.unwrap_or_default();
-            put(info, EventInfo2 { again, terminate, nominals, states, next_defined, next })
+            put(info, Fmi2EventInfo { again, terminate, nominals, states, next_defined, next })
         })
     }
 }
@@ -660,12 +660,12 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     _intermediate: *const u32,
     _count: usize,
     environment: *mut c_void,
-    logger: Option<Logger3>,
+    logger: Option<Fmi3Logger>,
     _update: *const c_void,
 ) -> *mut c_void {
     // SAFETY: the simulator follows the standard.
     let (token, resources) = unsafe { (text(token), text(resources)) };
-    Component::begin(Log::Three { logger, environment }, path(&resources), &token, Mode::CoSimulation)
+    FmuComponent::begin(LoggerTarget::Three { logger, environment }, path(&resources), &token, FmuMode::CoSimulation)
 }
 
 /// # Safety
@@ -678,11 +678,11 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     _visible: bool,
     _logging: bool,
     environment: *mut c_void,
-    logger: Option<Logger3>,
+    logger: Option<Fmi3Logger>,
 ) -> *mut c_void {
     // SAFETY: the simulator follows the standard.
     let (token, resources) = unsafe { (text(token), text(resources)) };
-    Component::begin(Log::Three { logger, environment }, path(&resources), &token, Mode::ModelExchange)
+    FmuComponent::begin(LoggerTarget::Three { logger, environment }, path(&resources), &token, FmuMode::ModelExchange)
 }
 
 /// # Safety

@@ -2,7 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "reads its resources")]
 
-use bramah::internals::fmi::{Causality, Interface, Packed, Role, packed};
+use bramah::internals::fmi::{FmiCausality, FmiInterface, ModelExchangeRole, PackedRequest, packed};
 use bramah::results::Kind;
 use bramah::{Error, Exchange, InputPort, Interpolation, OwnedExchange, OwnedStepping, Probe, Simulation, State};
 use std::collections::BTreeMap;
@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// A way to run a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
+pub enum FmuMode {
     /// From step to step.
     CoSimulation,
     /// By the simulator's integrator.
@@ -19,58 +19,58 @@ pub enum Mode {
 }
 
 /// A model under way.
-enum Engine {
+enum FmuEngine {
     Stepping(OwnedStepping),
     Exchange(OwnedExchange),
 }
 
-impl Engine {
+impl FmuEngine {
     fn time(&mut self) -> f64 {
         match self {
-            Engine::Stepping(run) => run.with(|r| r.time()),
-            Engine::Exchange(run) => run.with(|r| r.time()),
+            FmuEngine::Stepping(run) => run.with(|r| r.time()),
+            FmuEngine::Exchange(run) => run.with(|r| r.time()),
         }
     }
 
     fn probe(&mut self, name: &str) -> Result<Probe, Error> {
         match self {
-            Engine::Stepping(run) => run.with(|r| r.probe(name)),
-            Engine::Exchange(run) => run.with(|r| r.probe(name)),
+            FmuEngine::Stepping(run) => run.with(|r| r.probe(name)),
+            FmuEngine::Exchange(run) => run.with(|r| r.probe(name)),
         }
     }
 
     fn get(&mut self, probe: Probe) -> Result<f64, Error> {
         match self {
-            Engine::Stepping(run) => Ok(run.with(|r| r.get(probe))),
-            Engine::Exchange(run) => run.with(|r| r.get(probe)),
+            FmuEngine::Stepping(run) => Ok(run.with(|r| r.get(probe))),
+            FmuEngine::Exchange(run) => run.with(|r| r.get(probe)),
         }
     }
 
     fn input(&mut self, name: &str) -> Result<InputPort, Error> {
         match self {
-            Engine::Stepping(run) => run.with(|r| r.input(name)),
-            Engine::Exchange(run) => run.with(|r| r.input(name)),
+            FmuEngine::Stepping(run) => run.with(|r| r.input(name)),
+            FmuEngine::Exchange(run) => run.with(|r| r.input(name)),
         }
     }
 
     fn set(&mut self, input: InputPort, value: f64) {
         match self {
-            Engine::Stepping(run) => run.with(|r| r.set(input, value)),
-            Engine::Exchange(run) => run.with(|r| r.set(input, value)),
+            FmuEngine::Stepping(run) => run.with(|r| r.set(input, value)),
+            FmuEngine::Exchange(run) => run.with(|r| r.set(input, value)),
         }
     }
 }
 
 /// A run under way, with what was looked up in it, by port.
-struct Run {
-    engine: Engine,
+struct FmuRun {
+    engine: FmuEngine,
     probes: Vec<Option<Probe>>,
     inputs: Vec<Option<InputPort>>,
 }
 
 /// How the last call ended, where it did not fail.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Went {
+pub enum CallOutcome {
     /// As asked.
     On,
     /// The model has called `terminate`.
@@ -79,37 +79,37 @@ pub enum Went {
 
 /// A state of a unit, to come back to.
 #[derive(Clone, Debug)]
-pub struct Snapshot {
+pub struct FmuSnapshot {
     given: BTreeMap<usize, f64>,
     state: Option<State>,
     ready: bool,
 }
 
 /// What was compiled in this process, by token: instances of one unit share its code. A token is a digest of the texts.
-static COMPILED: Mutex<BTreeMap<String, (Simulation, Interface)>> = Mutex::new(BTreeMap::new());
+static COMPILED: Mutex<BTreeMap<String, (Simulation, FmiInterface)>> = Mutex::new(BTreeMap::new());
 
 /// An instance.
-pub struct Unit {
-    kind: Mode,
+pub struct FmuInstance {
+    kind: FmuMode,
     /// As it was compiled.
     fresh: Simulation,
     simulation: Simulation,
-    interface: Interface,
+    interface: FmiInterface,
     /// How many continuous states and functions that watch for events there are.
     counts: [usize; 2],
     /// Values set from outside, by port.
     given: BTreeMap<usize, f64>,
-    run: Option<Run>,
+    run: Option<FmuRun>,
     /// Initialization is over: inputs now act from step to step.
     ready: bool,
 }
 
-impl Unit {
+impl FmuInstance {
     /// Compiles what lies in the folder of resources.
     ///
     /// # Errors
     /// What a user reads.
-    pub fn new(resources: &Path, token: &str, kind: Mode) -> Result<Self, String> {
+    pub fn new(resources: &Path, token: &str, kind: FmuMode) -> Result<Self, String> {
         let mut compiled = COMPILED.lock().unwrap_or_else(PoisonError::into_inner);
         let (simulation, interface) = match compiled.get(token) {
             Some(known) => known.clone(),
@@ -119,23 +119,23 @@ impl Unit {
                 made
             }
         };
-        if let (Mode::ModelExchange, Some(why)) = (kind, interface.alone) {
+        if let (FmuMode::ModelExchange, Some(why)) = (kind, interface.alone) {
             return Err(format!("there is no Model Exchange: {why}"));
         }
         let (fresh, given) = (simulation.clone(), BTreeMap::new());
         let counts = [interface.rates().len(), interface.indicators().len()];
-        Ok(Unit { kind, fresh, simulation, interface, counts, given, run: None, ready: false })
+        Ok(FmuInstance { kind, fresh, simulation, interface, counts, given, run: None, ready: false })
     }
 
-    fn compile(resources: &Path, token: &str) -> Result<(Simulation, Interface), String> {
+    fn compile(resources: &Path, token: &str) -> Result<(Simulation, FmiInterface), String> {
         let file = resources.join(packed::FILE);
         let text = std::fs::read_to_string(&file).map_err(|why| format!("`{}`: {why}", file.display()))?;
-        let packed = Packed::from_json(&text).map_err(|why| format!("`{}`: {why}", file.display()))?;
+        let packed = PackedRequest::from_json(&text).map_err(|why| format!("`{}`: {why}", file.display()))?;
         if packed.token != token {
             return Err("the token is not that of this unit: description and binary do not belong together".to_owned());
         }
         let simulation = Simulation::compile(&packed, &packed.request()).map_err(|e| e.full())?;
-        let interface = Interface::new(&simulation, &packed.outputs)?;
+        let interface = FmiInterface::new(&simulation, &packed.outputs)?;
         Ok((simulation, interface))
     }
 
@@ -166,20 +166,20 @@ impl Unit {
         let Some(port) = (reference as usize).checked_sub(1) else { return Ok(self.time()) };
         let name = self.name(port)?;
         match self.interface.ports[port].causality {
-            Causality::Parameter | Causality::Calculated if self.run.is_none() => {
+            FmiCausality::Parameter | FmiCausality::Calculated if self.run.is_none() => {
                 return self.simulation.get(&name).map_err(|e| e.full());
             }
             // the run takes it over with its next step
-            Causality::Input if self.given.contains_key(&port) => return Ok(self.given[&port]),
+            FmiCausality::Input if self.given.contains_key(&port) => return Ok(self.given[&port]),
             _ => {}
         }
         let rate = match self.interface.ports[port].role {
-            Role::Plain => None,
-            Role::Rate(state) => {
+            ModelExchangeRole::Plain => None,
+            ModelExchangeRole::Rate(state) => {
                 let state = &self.interface.ports[state].signal.name;
                 Some(self.simulation.rate_probe(state).map_err(|e| e.full())?)
             }
-            Role::Indicator(k) => return self.exchange(|e| e.indicators().map(|all| all[k])),
+            ModelExchangeRole::Indicator(k) => return self.exchange(|e| e.indicators().map(|all| all[k])),
         };
         let run = self.begun()?;
         let probe = match (run.probes[port], rate) {
@@ -203,12 +203,12 @@ impl Unit {
             return Err(format!("`{name}` cannot be {value}: its values are 1 to {}", literals.len()));
         }
         match self.interface.ports[port].causality {
-            Causality::Parameter if !self.ready => {
+            FmiCausality::Parameter if !self.ready => {
                 self.simulation.set(&name, value).map_err(|e| e.full())?;
                 self.run = None;
             }
-            Causality::Input if !value.is_finite() => return Err(format!("the input `{name}` cannot be {value}")),
-            Causality::Input if self.ready => {
+            FmiCausality::Input if !value.is_finite() => return Err(format!("the input `{name}` cannot be {value}")),
+            FmiCausality::Input if self.ready => {
                 let run = self.begun()?;
                 let input = match run.inputs[port] {
                     Some(input) => input,
@@ -217,8 +217,8 @@ impl Unit {
                 run.inputs[port] = Some(input);
                 run.engine.set(input, value);
             }
-            Causality::Input => self.run = None,
-            Causality::Parameter => return Err(format!("the parameter `{name}` keeps its value after the start")),
+            FmiCausality::Input => self.run = None,
+            FmiCausality::Parameter => return Err(format!("the parameter `{name}` keeps its value after the start")),
             _ => return Err(format!("`{name}` follows from others and cannot be set")),
         }
         self.given.insert(port, value);
@@ -239,10 +239,10 @@ impl Unit {
     ///
     /// # Errors
     /// Why the run cannot go on.
-    pub fn step_to(&mut self, time: f64) -> Result<Went, String> {
-        let Engine::Stepping(run) = &mut self.begun()?.engine else { return Err("there are no steps".to_owned()) };
+    pub fn step_to(&mut self, time: f64) -> Result<CallOutcome, String> {
+        let FmuEngine::Stepping(run) = &mut self.begun()?.engine else { return Err("there are no steps".to_owned()) };
         run.with(|r| r.step_to(time)).map_err(|e| e.full())?;
-        Ok(if run.with(|r| r.terminated().is_some()) { Went::Terminated } else { Went::On })
+        Ok(if run.with(|r| r.terminated().is_some()) { CallOutcome::Terminated } else { CallOutcome::On })
     }
 
     /// Acts on the model of Model Exchange.
@@ -251,8 +251,8 @@ impl Unit {
     /// This is not Model Exchange; what the act says.
     pub fn exchange<T>(&mut self, act: impl FnOnce(&mut Exchange<'_>) -> Result<T, Error>) -> Result<T, String> {
         match &mut self.begun()?.engine {
-            Engine::Exchange(run) => run.with(act).map_err(|e| e.full()),
-            Engine::Stepping(_) => Err("this is a function of Model Exchange".to_owned()),
+            FmuEngine::Exchange(run) => run.with(act).map_err(|e| e.full()),
+            FmuEngine::Stepping(_) => Err("this is a function of Model Exchange".to_owned()),
         }
     }
 
@@ -270,8 +270,8 @@ impl Unit {
     pub fn warnings(&mut self) -> Vec<String> {
         let Some(run) = &mut self.run else { return Vec::new() };
         let warnings = match &mut run.engine {
-            Engine::Stepping(run) => run.with(|r| r.warnings()),
-            Engine::Exchange(run) => run.with(|r| r.warnings()),
+            FmuEngine::Stepping(run) => run.with(|r| r.warnings()),
+            FmuEngine::Exchange(run) => run.with(|r| r.warnings()),
         };
         warnings.into_iter().map(|d| d.message).collect()
     }
@@ -287,20 +287,20 @@ impl Unit {
     ///
     /// # Errors
     /// Those of Model Exchange are not kept.
-    pub fn snapshot(&mut self) -> Result<Snapshot, String> {
+    pub fn snapshot(&mut self) -> Result<FmuSnapshot, String> {
         let state = match self.run.as_mut().map(|run| &mut run.engine) {
             None => None,
-            Some(Engine::Stepping(run)) => Some(run.with(|r| r.state())),
-            Some(Engine::Exchange(_)) => return Err("states of Model Exchange cannot be kept".to_owned()),
+            Some(FmuEngine::Stepping(run)) => Some(run.with(|r| r.state())),
+            Some(FmuEngine::Exchange(_)) => return Err("states of Model Exchange cannot be kept".to_owned()),
         };
-        Ok(Snapshot { given: self.given.clone(), state, ready: self.ready })
+        Ok(FmuSnapshot { given: self.given.clone(), state, ready: self.ready })
     }
 
     /// Goes back to a state.
     ///
     /// # Errors
     /// The state is of another model.
-    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), String> {
+    pub fn restore(&mut self, snapshot: &FmuSnapshot) -> Result<(), String> {
         self.given.clone_from(&snapshot.given);
         // parameters that were set after the snapshot go back as well; times and tolerance stay
         let settings = self.simulation.settings();
@@ -309,7 +309,7 @@ impl Unit {
         let settings = self.simulation.settings();
         (settings.start_time, settings.stop_time, settings.tolerance) = (start, stop, tolerance);
         for (&port, &value) in &snapshot.given {
-            if self.interface.ports[port].causality == Causality::Parameter {
+            if self.interface.ports[port].causality == FmiCausality::Parameter {
                 self.simulation.set(&self.interface.ports[port].signal.name, value).map_err(|e| e.full())?;
             }
         }
@@ -322,7 +322,7 @@ impl Unit {
     }
 
     /// A snapshot as bytes.
-    pub fn bytes(snapshot: &Snapshot) -> Vec<u8> {
+    pub fn bytes(snapshot: &FmuSnapshot) -> Vec<u8> {
         let mut out = vec![u8::from(snapshot.ready), u8::from(snapshot.state.is_some())];
         out.extend((snapshot.given.len() as u64).to_le_bytes());
         for (&port, value) in &snapshot.given {
@@ -333,8 +333,8 @@ impl Unit {
         out
     }
 
-    /// What [`Unit::bytes`] has written; `None` for the bytes of another model.
-    pub fn read_bytes(&self, bytes: &[u8]) -> Option<Snapshot> {
+    /// What [`FmuInstance::bytes`] has written; `None` for the bytes of another model.
+    pub fn read_bytes(&self, bytes: &[u8]) -> Option<FmuSnapshot> {
         let (&[ready, has_state], rest) = bytes.split_first_chunk::<2>()?;
         let (count, mut rest) = rest.split_first_chunk::<8>()?;
         let mut given = BTreeMap::new();
@@ -348,7 +348,7 @@ impl Unit {
         }
         let names = || self.simulation.model().dae.variables.iter().map(|v| v.name.clone()).collect();
         let state = if has_state == 1 { Some(State::from_bytes(names(), rest)?) } else { None };
-        Some(Snapshot { given, state, ready: ready == 1 })
+        Some(FmuSnapshot { given, state, ready: ready == 1 })
     }
 
     fn name(&self, port: usize) -> Result<String, String> {
@@ -357,22 +357,22 @@ impl Unit {
     }
 
     /// The run; it begins with what was set so far.
-    fn begun(&mut self) -> Result<&mut Run, String> {
+    fn begun(&mut self) -> Result<&mut FmuRun, String> {
         if self.run.is_none() {
             self.run = Some(self.begin(None)?);
         }
         self.run.as_mut().ok_or_else(|| "the run has not begun".to_owned())
     }
 
-    fn begin(&mut self, from: Option<&State>) -> Result<Run, String> {
+    fn begin(&mut self, from: Option<&State>) -> Result<FmuRun, String> {
         let ports = self.interface.ports.len();
         let simulation = self.prepared()?;
         let engine = match self.kind {
-            Mode::CoSimulation => OwnedStepping::new(simulation, from).map(Engine::Stepping),
-            Mode::ModelExchange => OwnedExchange::new(simulation).map(Engine::Exchange),
+            FmuMode::CoSimulation => OwnedStepping::new(simulation, from).map(FmuEngine::Stepping),
+            FmuMode::ModelExchange => OwnedExchange::new(simulation).map(FmuEngine::Exchange),
         };
         let engine = engine.map_err(|e| e.full())?;
-        Ok(Run { engine, probes: vec![None; ports], inputs: vec![None; ports] })
+        Ok(FmuRun { engine, probes: vec![None; ports], inputs: vec![None; ports] })
     }
 
     /// The simulation with the inputs that were set, for the initial values.
@@ -381,7 +381,7 @@ impl Unit {
         let start = simulation.settings().start_time;
         for (&port, &value) in &self.given {
             let ports = &self.interface.ports[port];
-            if ports.causality == Causality::Input {
+            if ports.causality == FmiCausality::Input {
                 let input = simulation.input(&ports.signal.name, &[start], &[value], Interpolation::Held);
                 input.map_err(|e| e.full())?;
             }

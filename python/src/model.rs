@@ -6,7 +6,7 @@ use crate::stepper;
 use crate::threads::pooled;
 use bramah::internals::diag::render::full;
 use bramah::internals::plot::network;
-use bramah::internals::units::{Unit, quantity};
+use bramah::internals::units::{MeasurementUnit, quantity};
 use bramah::world::{DiskWorld, MemoryWorld, Overlay};
 use bramah::{Analyze, Diagnostic, Error, Kind, Override, Request, Signal, Simulation};
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
@@ -128,7 +128,7 @@ fn number(value: &Value, signal: &Signal) -> Option<f64> {
                 // a temperature or a difference: the compiler knows the parameter's type
                 return None;
             }
-            unit.convert(number, &Unit::parse(&signal.unit).ok()?)
+            unit.convert(number, &MeasurementUnit::parse(&signal.unit).ok()?)
         }
     }
 }

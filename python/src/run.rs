@@ -3,9 +3,9 @@
 use crate::errors::raised;
 use crate::model::{Quantity, quantity_of};
 use bramah::internals::diag::render::full;
-use bramah::internals::plot::select::{Choice, Run as Drawn, UnitSystem, figure};
+use bramah::internals::plot::select::{FigureOptions, LabelledTrajectory as Drawn, UnitSystem, figure};
 use bramah::internals::plot::{html, svg};
-use bramah::results::{CsvWriter, Globs};
+use bramah::results::{CsvWriter, GlobPatterns};
 use bramah::{Control, End, Error, Interpolation, Outcome, Progress, Signal, Simulation, Sources, State, Trajectory};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::exceptions::{PyOSError, PyValueError};
@@ -71,7 +71,7 @@ impl Plan {
         let all: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
         let mut chosen: Vec<&str> = Vec::new();
         for pattern in &self.outputs {
-            let globs = Globs::new(&[pattern]);
+            let globs = GlobPatterns::new(&[pattern]);
             let before = chosen.len();
             chosen.extend(all.iter().map(String::as_str).filter(|n| globs.matches(n)));
             if chosen.len() == before {
@@ -265,7 +265,7 @@ impl Run {
         if engineering {
             UnitSystem::Engineering.apply(&mut trajectory);
         }
-        let choice = Choice { variables: Globs::new(&variables), title, ..Choice::default() };
+        let choice = FigureOptions { variables: GlobPatterns::new(&variables), title, ..FigureOptions::default() };
         let drawn = figure(&[Drawn { label: "", trajectory: &trajectory }], &choice).map_err(PyValueError::new_err)?;
         Ok(if format == "svg" { svg::write(&drawn.figure) } else { html::write(&drawn.figure, &[]) })
     }

@@ -2,14 +2,14 @@
 
 use clap::{Args, ValueEnum};
 
-use super::messages::Messages;
+use super::messages::MessageReporter;
 use super::recorder::write_text;
 use super::request::ModelArgs;
-use super::{Ending, Failure, model};
-use bramah_analysis::experiment::Experiment;
+use super::{CommandFailure, CommandStatus, model};
+use bramah_analysis::experiment::ExperimentSpecification;
 use bramah_model::flat::FlatModel;
-use bramah_model::network::Graph;
-use bramah_model::structure::{Block, Dae};
+use bramah_model::network::ComponentGraph;
+use bramah_model::structure::{BltBlock, Dae};
 use bramah_plot::{network, png};
 use bramah_syntax::diag::Code;
 
@@ -32,14 +32,14 @@ pub(super) struct CheckArgs {
     all: bool,
     /// Also write what a stage makes of the model
     #[arg(long, value_enum, value_name = "STAGE")]
-    emit: Option<Emit>,
+    emit: Option<EmitFormat>,
     /// Where to write it [default: stdout]
     #[arg(short, long, value_name = "FILE", requires = "emit")]
     output_file: Option<String>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Emit {
+enum EmitFormat {
     /// Components and connections
     Network,
     /// Components and connections as a picture
@@ -52,7 +52,7 @@ enum Emit {
     Blt,
 }
 
-pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &CheckArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     if let Some(file) = &args.output_file {
         super::files::ending(std::path::Path::new(file), "this", endings(args.emit))?;
     }
@@ -62,31 +62,36 @@ pub(super) fn run(args: &CheckArgs, messages: &mut Messages) -> Result<Ending, F
     }
     // The network can be looked at even when the equations do not fit together.
     match args.emit {
-        Some(Emit::Network) => {
+        Some(EmitFormat::Network) => {
             write(args, &network_list(&messages.quietly(|quiet| model::graph(&experiment, quiet))?.1))?
         }
-        Some(Emit::Svg) => write_picture(args, &messages.quietly(|quiet| model::graph(&experiment, quiet))?)?,
-        Some(Emit::Flat) => write(args, &messages.quietly(|quiet| model::flatten(&experiment, quiet))?.flat.text())?,
-        Some(Emit::Dae | Emit::Blt) | None => {}
+        Some(EmitFormat::Svg) => write_picture(args, &messages.quietly(|quiet| model::graph(&experiment, quiet))?)?,
+        Some(EmitFormat::Flat) => {
+            write(args, &messages.quietly(|quiet| model::flatten(&experiment, quiet))?.flat.text())?
+        }
+        Some(EmitFormat::Dae | EmitFormat::Blt) | None => {}
     }
     let (flat, _, dae) = model::sort(&experiment, messages)?;
     match args.emit {
-        Some(Emit::Dae) => write(args, &dae.dae_text())?,
-        Some(Emit::Blt) => write(args, &dae.blt_text())?,
+        Some(EmitFormat::Dae) => write(args, &dae.dae_text())?,
+        Some(EmitFormat::Blt) => write(args, &dae.blt_text())?,
         _ => {}
     }
     messages.remark(&summary(&flat, &dae));
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
 /// A row for each model: `ok` with its size, or the first error.
-fn check_all(experiment: &Experiment, messages: &mut Messages) -> Result<Ending, Failure> {
+fn check_all(
+    experiment: &ExperimentSpecification,
+    messages: &mut MessageReporter,
+) -> Result<CommandStatus, CommandFailure> {
     let names = model::runnable(experiment)?;
     let width = names.iter().map(String::len).max().unwrap_or(0);
     let mut wrong = 0;
     for name in &names {
-        let one = Experiment { model: Some(name.clone()), ..experiment.clone() };
-        let row = match model::sort(&one, &mut Messages::silent()) {
+        let one = ExperimentSpecification { model: Some(name.clone()), ..experiment.clone() };
+        let row = match model::sort(&one, &mut MessageReporter::silent()) {
             Ok((flat, _, dae)) => {
                 let (equations, states) = (flat.equations.len(), dae.states.len());
                 format!("ok     {}, {}", count(equations, "equation"), count(states, "state"))
@@ -100,23 +105,23 @@ fn check_all(experiment: &Experiment, messages: &mut Messages) -> Result<Ending,
         write_text("-", &format!("{name:width$}  {row}\n"))?;
     }
     messages.remark(&format!("{} of {} models are fine", names.len() - wrong, names.len()));
-    Ok(if wrong == 0 { Ending::Fine } else { Ending::Wrong })
+    Ok(if wrong == 0 { CommandStatus::Fine } else { CommandStatus::Wrong })
 }
 
 fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
-fn write(args: &CheckArgs, text: &str) -> Result<(), Failure> {
+fn write(args: &CheckArgs, text: &str) -> Result<(), CommandFailure> {
     write_text(args.output_file.as_deref().unwrap_or("-"), text)
 }
 
 /// A picture may also be a PNG.
-fn write_picture(args: &CheckArgs, (class, graph): &(String, Graph)) -> Result<(), Failure> {
+fn write_picture(args: &CheckArgs, (class, graph): &(String, ComponentGraph)) -> Result<(), CommandFailure> {
     let text = network::write(graph, class);
     match &args.output_file {
         Some(file) if file.to_lowercase().ends_with(".png") => {
-            let pixels = png::write(&text).map_err(|e| Failure::new(Code::BadArgument, e))?;
+            let pixels = png::write(&text).map_err(|e| CommandFailure::new(Code::BadArgument, e))?;
             super::files::write(std::path::Path::new(file), &pixels)
         }
         _ => write(args, &text),
@@ -124,16 +129,16 @@ fn write_picture(args: &CheckArgs, (class, graph): &(String, Graph)) -> Result<(
 }
 
 /// What the file's name may end in.
-fn endings(emit: Option<Emit>) -> &'static [&'static str] {
+fn endings(emit: Option<EmitFormat>) -> &'static [&'static str] {
     match emit {
-        Some(Emit::Svg) => &["svg", "png"],
-        Some(Emit::Flat) => &["txt", "mo"],
-        Some(Emit::Network | Emit::Dae | Emit::Blt) | None => &["txt"],
+        Some(EmitFormat::Svg) => &["svg", "png"],
+        Some(EmitFormat::Flat) => &["txt", "mo"],
+        Some(EmitFormat::Network | EmitFormat::Dae | EmitFormat::Blt) | None => &["txt"],
     }
 }
 
 /// One line a component, then one line a connection.
-fn network_list(graph: &Graph) -> String {
+fn network_list(graph: &ComponentGraph) -> String {
     let mut out = String::new();
     for component in graph.node_weights() {
         out.push_str(&format!("{} {}\n", component.class, component.name));
@@ -162,7 +167,7 @@ fn summary(flat: &FlatModel, dae: &Dae) -> String {
     };
     let equations = flat.equations.len();
     let largest = dae.continuous.iter().filter_map(|b| match b {
-        Block::Loop(l) => Some((l.inner.len() + l.residuals.len(), l.tearing.len())),
+        BltBlock::Loop(l) => Some((l.inner.len() + l.residuals.len(), l.tearing.len())),
         _ => None,
     });
     let largest = match largest.max() {

@@ -3,10 +3,10 @@
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use super::Failure;
+use super::CommandFailure;
 use super::files::{access, write};
-use super::recorder::Target;
-use bramah_solve::{Checkpoint, Input, Settings};
+use super::recorder::ResultTarget;
+use bramah_solve::{Checkpoint, RecordedInput, Settings};
 use bramah_syntax::diag::{Code, Diagnostic, Sources};
 
 /// The first line of a file; the number grows when its form changes.
@@ -16,29 +16,29 @@ const PARTS: f64 = 20.0;
 
 /// What must be the same for a run to go on, each as a number that changes with it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Marks {
+pub(super) struct RunFingerprint {
     /// By what they are called in messages.
     marks: [(&'static str, String); 4],
 }
 
-impl Marks {
+impl RunFingerprint {
     /// Of a run: the texts that the model was made of, values given from outside and tables included; the settings and
     /// the columns; the recorded inputs.
-    pub fn new(class: &str, sources: &Sources, settings: &Settings, inputs: &[Input]) -> Self {
-        let mut model = Hash::default();
+    pub fn new(class: &str, sources: &Sources, settings: &Settings, inputs: &[RecordedInput]) -> Self {
+        let mut model = FnvHash::default();
         model.text(class);
         sources.iter().for_each(|source| model.text(&source.text));
-        let mut recorded = Hash::default();
+        let mut recorded = FnvHash::default();
         for input in inputs {
             recorded.text(&format!("{} {:?}", input.variable.0, input.interpolation));
             input.times.iter().chain(input.values.iter()).for_each(|x| recorded.bytes(&x.to_bits().to_le_bytes()));
         }
-        let mut asked = Hash::default();
+        let mut asked = FnvHash::default();
         asked.text(&format!("{settings:?}"));
         let version = env!("CARGO_PKG_VERSION").to_owned();
         let marks = [model, asked, recorded].map(|hash| format!("{:016x}", hash.state));
         let [model, asked, recorded] = marks;
-        Marks {
+        RunFingerprint {
             marks: [
                 ("version of bramah", version),
                 ("model or one of its values", model),
@@ -51,17 +51,17 @@ impl Marks {
 
 /// Fowler, Noll and Vo's hash (FNV-1a) of 64 bits: the same in every version and on every machine.
 #[derive(Clone, Copy)]
-struct Hash {
+struct FnvHash {
     state: u64,
 }
 
-impl Default for Hash {
+impl Default for FnvHash {
     fn default() -> Self {
-        Hash { state: 0xcbf2_9ce4_8422_2325 }
+        FnvHash { state: 0xcbf2_9ce4_8422_2325 }
     }
 }
 
-impl Hash {
+impl FnvHash {
     fn bytes(&mut self, bytes: &[u8]) {
         for &byte in bytes {
             self.state = (self.state ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
@@ -77,7 +77,7 @@ impl Hash {
 
 /// How far the result had come at a checkpoint.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Written {
+pub(super) struct ResultPosition {
     /// The result's name.
     pub file: String,
     /// Bytes in its part.
@@ -88,9 +88,9 @@ pub(super) struct Written {
 
 /// A file of checkpoints: always the last one.
 #[derive(Clone, Debug)]
-pub(super) struct Keeper {
+pub(super) struct CheckpointFile {
     path: PathBuf,
-    marks: Marks,
+    marks: RunFingerprint,
 }
 
 /// The distance of checkpoints when none is said.
@@ -98,10 +98,10 @@ pub(super) fn usual_distance(settings: &Settings) -> f64 {
     (settings.stop_time - settings.start_time) / PARTS
 }
 
-impl Keeper {
+impl CheckpointFile {
     /// For a run with these marks.
-    pub fn new(path: &str, marks: Marks) -> Self {
-        Keeper { path: PathBuf::from(path), marks }
+    pub fn new(path: &str, marks: RunFingerprint) -> Self {
+        CheckpointFile { path: PathBuf::from(path), marks }
     }
 
     /// The file's name.
@@ -110,7 +110,7 @@ impl Keeper {
     }
 
     /// Writes a checkpoint in place of the last one.
-    pub fn save(&self, at: &Checkpoint, written: &Written) -> Result<(), Failure> {
+    pub fn save(&self, at: &Checkpoint, written: &ResultPosition) -> Result<(), CommandFailure> {
         let mut text = format!("{HEAD}\n");
         for (_, mark) in &self.marks.marks {
             // writing to a string cannot fail
@@ -122,7 +122,7 @@ impl Keeper {
     }
 
     /// The checkpoint to go on from; `None` when there is no file.
-    pub fn load(&self, target: &Target) -> Result<Option<(Checkpoint, Written)>, Failure> {
+    pub fn load(&self, target: &ResultTarget) -> Result<Option<(Checkpoint, ResultPosition)>, CommandFailure> {
         let text = match std::fs::read_to_string(&self.path) {
             Ok(text) => text,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
@@ -144,14 +144,14 @@ impl Keeper {
     }
 
     /// The run is over.
-    pub fn remove(&self) -> Result<(), Failure> {
+    pub fn remove(&self) -> Result<(), CommandFailure> {
         match std::fs::remove_file(&self.path) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(access(&self.path, "removed", &e)),
             _ => Ok(()),
         }
     }
 
-    fn unusable(&self, why: &str) -> Failure {
+    fn unusable(&self, why: &str) -> CommandFailure {
         Diagnostic::new(Code::BadCheckpoint, format!("cannot go on from `{}`: {why}", self.path.display()))
             .help(
                 "repeat the command that began the run, with the files as they were; or remove the file to begin anew",
@@ -169,9 +169,9 @@ fn read_marks(text: &str) -> Option<([&str; 4], &str)> {
     Some((marks, rest))
 }
 
-fn read_written(text: &str) -> Option<(Written, &str)> {
+fn read_written(text: &str) -> Option<(ResultPosition, &str)> {
     let (line, rest) = text.split_once('\n')?;
     let mut words = line.splitn(3, ' ');
     let (bytes, rows) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
-    Some((Written { bytes, rows, file: words.next()?.to_owned() }, rest))
+    Some((ResultPosition { bytes, rows, file: words.next()?.to_owned() }, rest))
 }

@@ -1,23 +1,23 @@
 //! Which variables a result holds.
 
-use super::Failure;
-use super::recorder::Target;
+use super::CommandFailure;
+use super::recorder::ResultTarget;
 use bramah_expr::VarId;
-use bramah_model::flat::{Variability, Variable};
+use bramah_model::flat::{FlatVariable, Variability};
 use bramah_model::structure::Dae;
-use bramah_results::Globs;
+use bramah_results::GlobPatterns;
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
 /// The variables to write, in declaration order.
 ///
 /// Without patterns, and for patterns with `*` or `?`: variables that can change and are neither protected nor annotated
 /// `HideResult`, and protected states; in a `.mat` file also parameters, which cost nothing there. A variable named exactly is always written.
-pub(super) fn choose(dae: &Dae, patterns: &[String], target: &Target) -> Result<Vec<VarId>, Failure> {
-    let globs = Globs::new(patterns);
-    let with_parameters = matches!(target, Target::Mat(_));
+pub(super) fn choose(dae: &Dae, patterns: &[String], target: &ResultTarget) -> Result<Vec<VarId>, CommandFailure> {
+    let globs = GlobPatterns::new(patterns);
+    let with_parameters = matches!(target, ResultTarget::Mat(_));
     let usual =
-        |id: VarId, v: &Variable| dae.is_shown(id) && (with_parameters || v.variability >= Variability::Discrete);
-    let wanted = |id: VarId, v: &Variable| {
+        |id: VarId, v: &FlatVariable| dae.is_shown(id) && (with_parameters || v.variability >= Variability::Discrete);
+    let wanted = |id: VarId, v: &FlatVariable| {
         if globs.is_empty() {
             return usual(id, v);
         }

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::messages::Messages;
+use super::messages::MessageReporter;
 use super::plot::stem;
-use super::{Ending, Failure, data, files, plot};
+use super::{CommandFailure, CommandStatus, data, files, plot};
 use bramah_analysis::experiment::seconds;
 use bramah_plot::select::shown_values;
-use bramah_plot::{Band, Figure, Panel, Series};
-use bramah_results::compare::{Comparison, SignalComparison, Tolerance, compare, tube};
-use bramah_results::{Globs, Kind, Trajectory, glob, number};
+use bramah_plot::{Figure, FigurePanel, PlotBand, PlotSeries};
+use bramah_results::compare::{SignalComparison, TrajectoryComparison, TubeTolerance, compare, tube};
+use bramah_results::{GlobPatterns, Kind, Trajectory, glob, number};
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
 /// Put a result beside a reference, signal by signal
@@ -84,14 +84,14 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-pub(super) fn run(args: &CompareArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &CompareArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let times = match args.time_column.as_slice() {
         [] => [None, None],
         [both] => [Some(both.as_str()); 2],
         [a, b] => [Some(a.as_str()), Some(b.as_str())],
         more => {
             let text = format!("`--time-column` names {} columns, and there are two files", more.len());
-            return Err(Failure::new(Code::BadArgument, text));
+            return Err(CommandFailure::new(Code::BadArgument, text));
         }
     };
     let mut reference = data::result(&args.reference, times[0], messages)?;
@@ -104,7 +104,7 @@ pub(super) fn run(args: &CompareArgs, messages: &mut Messages) -> Result<Ending,
     let pairs = pairs(args, &mut reference, &result)?;
     warn_of_units(&reference, &result, &pairs, messages);
     let tolerance =
-        Tolerance { relative: args.tolerance, absolute: args.absolute_tolerance, time: args.time_tolerance };
+        TubeTolerance { relative: args.tolerance, absolute: args.absolute_tolerance, time: args.time_tolerance };
     let comparison = compare(&reference, &result, &pairs, tolerance);
     let text = match args.format {
         TableFormat::Table => table(&comparison),
@@ -120,11 +120,11 @@ pub(super) fn run(args: &CompareArgs, messages: &mut Messages) -> Result<Ending,
         let facts = [("reference".to_owned(), names.0.clone()), ("result".to_owned(), names.1.clone())];
         plot::write(&figure, &facts, path, messages)?;
     }
-    Ok(if comparison.within { Ending::Fine } else { Ending::Wrong })
+    Ok(if comparison.within { CommandStatus::Fine } else { CommandStatus::Wrong })
 }
 
 /// `--unit` is for signals without a unit: what a file says of its own stays.
-fn name_units(trajectory: &mut Trajectory, assignments: &[String]) -> Result<(), Failure> {
+fn name_units(trajectory: &mut Trajectory, assignments: &[String]) -> Result<(), CommandFailure> {
     let own: Vec<String> = trajectory.signals.iter().map(|s| s.unit.clone()).collect();
     data::apply_units(trajectory, assignments)?;
     for (signal, own) in trajectory.signals.iter_mut().zip(own).filter(|(_, own)| !own.is_empty()) {
@@ -134,7 +134,7 @@ fn name_units(trajectory: &mut Trajectory, assignments: &[String]) -> Result<(),
 }
 
 /// Numbers with a unit beside numbers without one are compared as they stand.
-fn warn_of_units(reference: &Trajectory, result: &Trajectory, pairs: &[(usize, usize)], messages: &Messages) {
+fn warn_of_units(reference: &Trajectory, result: &Trajectory, pairs: &[(usize, usize)], messages: &MessageReporter) {
     for (a, b) in pairs.iter().map(|&(a, b)| (&reference.signals[a], &result.signals[b])) {
         if a.kind == Kind::Real && a.unit.is_empty() != b.unit.is_empty() {
             let unit = if a.unit.is_empty() { &b.unit } else { &a.unit };
@@ -149,12 +149,16 @@ fn warn_of_units(reference: &Trajectory, result: &Trajectory, pairs: &[(usize, u
 
 /// Indices in reference and result of what is to be compared. Units given in `--map` are written into the reference,
 /// and its values converted to the result's unit.
-fn pairs(args: &CompareArgs, reference: &mut Trajectory, result: &Trajectory) -> Result<Vec<(usize, usize)>, Failure> {
+fn pairs(
+    args: &CompareArgs,
+    reference: &mut Trajectory,
+    result: &Trajectory,
+) -> Result<Vec<(usize, usize)>, CommandFailure> {
     let mut pairs = Vec::new();
     for entry in args.map.iter().flat_map(|m| glob::split_list(m)) {
         pairs.push(mapped(&entry, args, reference, result)?);
     }
-    let globs = Globs::new(&args.variables);
+    let globs = GlobPatterns::new(&args.variables);
     if args.map.is_empty() || !globs.is_empty() {
         for (a, signal) in reference.signals.iter().enumerate() {
             let wanted = globs.is_empty() || globs.matches(&signal.name);
@@ -180,9 +184,12 @@ fn mapped(
     args: &CompareArgs,
     reference: &mut Trajectory,
     result: &Trajectory,
-) -> Result<(usize, usize), Failure> {
+) -> Result<(usize, usize), CommandFailure> {
     let Some((ours, theirs)) = entry.split_once('=') else {
-        return Err(Failure::new(Code::BadMap, format!("`--map {entry}`: `B=A` is expected, a signal of each file")));
+        return Err(CommandFailure::new(
+            Code::BadMap,
+            format!("`--map {entry}`: `B=A` is expected, a signal of each file"),
+        ));
     };
     let b = result.index(ours.trim()).ok_or_else(|| missing(ours.trim(), &args.result, result))?;
     let theirs = theirs.trim();
@@ -192,7 +199,8 @@ fn mapped(
     let with_unit = theirs.strip_suffix(']').and_then(|t| t.rsplit_once('['));
     let Some((name, unit)) = with_unit else { return Err(missing(theirs, &args.reference, reference)) };
     let a = reference.index(name.trim()).ok_or_else(|| missing(name.trim(), &args.reference, reference))?;
-    bramah_expr::units::Unit::parse(unit).map_err(|e| Failure::new(Code::BadMap, format!("`--map {entry}`: {e}")))?;
+    bramah_expr::units::MeasurementUnit::parse(unit)
+        .map_err(|e| CommandFailure::new(Code::BadMap, format!("`--map {entry}`: {e}")))?;
     reference.signals[a].unit = unit.trim().to_owned();
     Ok((a, b))
 }
@@ -212,7 +220,7 @@ fn harmonise(trajectory: &mut Trajectory, index: usize, unit: &str) {
     signal.display_unit = previous;
 }
 
-fn missing(name: &str, path: &std::path::Path, trajectory: &Trajectory) -> Failure {
+fn missing(name: &str, path: &std::path::Path, trajectory: &Trajectory) -> CommandFailure {
     let diagnostic = Diagnostic::new(Code::BadMap, format!("`{}` has no signal `{name}`", path.display()));
     match nearest(name, trajectory.signals.iter().map(|s| s.name.as_str())) {
         Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
@@ -222,7 +230,7 @@ fn missing(name: &str, path: &std::path::Path, trajectory: &Trajectory) -> Failu
 }
 
 /// The numbers in columns for people.
-fn table(comparison: &Comparison) -> String {
+fn table(comparison: &TrajectoryComparison) -> String {
     let head = ["signal", "unit", "rmse", "normalised", "maximum", "at s", "delay s", "outside", "verdict"];
     let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
     rows.extend(comparison.signals.iter().map(row));
@@ -268,14 +276,14 @@ fn row(s: &SignalComparison) -> Vec<String> {
 
 /// One panel a signal: the reference with its tube, and the result.
 fn picture(
-    comparison: &Comparison,
+    comparison: &TrajectoryComparison,
     reference: &Trajectory,
     result: &Trajectory,
     pairs: &[(usize, usize)],
     names: &(String, String),
 ) -> Figure {
     let panels = comparison.signals.iter().zip(pairs).map(|(s, &(a, b))| {
-        let curve = |t: &Trajectory, i: usize, name: &str, second: bool| Series {
+        let curve = |t: &Trajectory, i: usize, name: &str, second: bool| PlotSeries {
             name: format!("{} ({name})", t.signals[i].name),
             x: t.times.clone(),
             y: t.columns[i].clone(),
@@ -286,12 +294,12 @@ fn picture(
         };
         let (x, low, high) = tube(reference, a, s.tolerance, s.time_tolerance);
         let unit = if s.unit.is_empty() { String::new() } else { format!(" in {}", s.unit) };
-        Panel {
+        FigurePanel {
             x_label: "time in s".to_owned(),
             y_label: format!("{}{unit}", s.name),
             words: Vec::new(),
             series: vec![curve(reference, a, &names.0, false), curve(result, b, &names.1, true)],
-            bands: vec![Band { x, low, high, colour: 0 }],
+            bands: vec![PlotBand { x, low, high, colour: 0 }],
         }
     });
     Figure { title: format!("{} and {}", names.0, names.1), panels: panels.collect(), shared_x: true }

@@ -3,7 +3,7 @@
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
-use super::{Cli, Ending, Failure, files};
+use super::{Cli, CommandFailure, CommandStatus, files};
 
 /// Print completions for a shell
 #[derive(Args, Debug)]
@@ -17,9 +17,9 @@ pub(super) struct CompletionsArgs {
     shell: Shell,
 }
 
-pub(super) fn run(args: &CompletionsArgs) -> Result<Ending, Failure> {
+pub(super) fn run(args: &CompletionsArgs) -> Result<CommandStatus, CommandFailure> {
     let mut bytes = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "bramah", &mut bytes);
     files::print(&String::from_utf8_lossy(&bytes))?;
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }

@@ -1,9 +1,9 @@
 //! What a shipped class offers to those who use it, as text: ports, parameters, members of a package.
 
-use bramah_model::resolve::names::{self, Member};
-use bramah_model::resolve::{ClassId, Library, Trees};
-use bramah_model::shipped::Shipped;
-use bramah_syntax::ast::{ClassKind, Variability};
+use bramah_model::resolve::names::{self, MemberComponent};
+use bramah_model::resolve::{ClassId, Library, SyntaxArena};
+use bramah_model::shipped::ShippedWorld;
+use bramah_syntax::ast::{ClassKind, VariabilityPrefix};
 use bramah_syntax::world::World;
 use std::fmt::Write;
 
@@ -40,8 +40,8 @@ pub(super) fn resembling(name: &str) -> String {
 }
 
 fn with_library<T>(act: impl FnOnce(&mut Library<'_>) -> T) -> T {
-    let (trees, shipped) = (Trees::new(), Shipped);
-    let roots = Shipped::roots().map(|root| (&shipped as &dyn World, root)).into();
+    let (trees, shipped) = (SyntaxArena::new(), ShippedWorld);
+    let roots = ShippedWorld::roots().map(|root| (&shipped as &dyn World, root)).into();
     act(&mut Library::new(&trees, roots))
 }
 
@@ -78,7 +78,7 @@ fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
         let c = member.component;
         let said = c.description.as_deref().unwrap_or_default().to_owned();
         let class = c.class.dotted();
-        if c.prefix.variability == Some(Variability::Parameter) {
+        if c.prefix.variability == Some(VariabilityPrefix::Parameter) {
             parameters.push([c.name.name.as_str().to_owned(), value(library, member), said]);
         } else if class.contains("Interfaces.") {
             let when = c.condition.as_ref().map(|e| format!(" if {}", library.sources.text(e.span)));
@@ -96,7 +96,7 @@ fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
 }
 
 /// `Area = 1e-6 m2, 1e-12 to 10`: type, default, unit and range as far as they are given.
-fn value<'a>(library: &mut Library<'a>, member: Member<'a>) -> String {
+fn value<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> String {
     let c = member.component;
     let mut text = c.class.parts.last().map_or("", |p| p.name.as_str()).to_owned();
     let said = |library: &mut Library<'a>, name: &str| {

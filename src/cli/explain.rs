@@ -4,7 +4,7 @@ use clap::Args;
 use include_dir::{Dir, include_dir};
 
 use super::describe::{describe, resembling};
-use super::{Ending, Failure, files};
+use super::{CommandFailure, CommandStatus, files};
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
 /// One page a code: cause, smallest example, remedy.
@@ -24,20 +24,20 @@ pub(super) struct ExplainArgs {
     code: Option<String>,
 }
 
-pub(super) fn run(args: &ExplainArgs) -> Result<Ending, Failure> {
+pub(super) fn run(args: &ExplainArgs) -> Result<CommandStatus, CommandFailure> {
     let text = match &args.code {
         None => list(),
         Some(asked) => page(asked)?,
     };
     files::print(&text)?;
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
 fn list() -> String {
     Code::ALL.iter().map(|code| format!("{}  {}\n", code.id(), code.title())).collect()
 }
 
-fn page(asked: &str) -> Result<String, Failure> {
+fn page(asked: &str) -> Result<String, CommandFailure> {
     let wanted = asked.trim().to_uppercase();
     let Some(code) = Code::ALL.iter().find(|c| c.id() == wanted) else {
         return describe(asked.trim()).ok_or_else(|| unknown(asked, &wanted));
@@ -49,7 +49,7 @@ fn page(asked: &str) -> Result<String, Failure> {
     })
 }
 
-fn unknown(asked: &str, wanted: &str) -> Failure {
+fn unknown(asked: &str, wanted: &str) -> CommandFailure {
     let same_number = |c: &&Code| wanted.len() == 4 && c.id()[1..] == wanted[1..];
     let near = Code::ALL.iter().find(same_number).map(|c| c.id());
     let near = near.or_else(|| nearest(wanted, Code::ALL.iter().map(|c| c.id())));

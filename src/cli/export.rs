@@ -11,13 +11,13 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
 use super::files::{self, NewFile};
-use super::messages::Messages;
+use super::messages::MessageReporter;
 use super::model::{described, request};
 use super::request::ModelArgs;
-use super::{Ending, Failure};
+use super::{CommandFailure, CommandStatus};
 use bramah_circuit::Simulation;
-use bramah_fmi::description::{self, IDENTIFIER, Version};
-use bramah_fmi::{Causality, Interface, Packed, Recorder, packed};
+use bramah_fmi::description::{self, FmiVersion, IDENTIFIER};
+use bramah_fmi::{FmiCausality, FmiInterface, PackedRequest, ReadRecorder, packed};
 use bramah_plot::network;
 use bramah_plot::svg::escape;
 use bramah_results::number;
@@ -44,8 +44,8 @@ pub(super) struct ExportArgs {
     #[arg(short, long, value_name = "FMU")]
     output_file: Option<PathBuf>,
     /// Version of the standard
-    #[arg(long, value_enum, default_value_t = Fmi::Three)]
-    fmi: Fmi,
+    #[arg(long, value_enum, default_value_t = FmiVersionArg::Three)]
+    fmi: FmiVersionArg,
     /// Variables that are outputs, such as 'line.p,pump.*'; may be repeated
     #[arg(long, value_name = "GLOB,...")]
     outputs: Vec<String>,
@@ -55,7 +55,7 @@ pub(super) struct ExportArgs {
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Fmi {
+enum FmiVersionArg {
     /// FMI 2.0
     #[value(name = "2")]
     Two,
@@ -64,32 +64,32 @@ enum Fmi {
     Three,
 }
 
-pub(super) fn run(args: &ExportArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &ExportArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let library = runtime(args.runtime.as_deref())?;
     let experiment = args.model.experiment(None, messages)?;
     let request = request(&experiment)?;
-    let recorder = Recorder::new(&DiskWorld);
+    let recorder = ReadRecorder::new(&DiskWorld);
     let simulation = match Simulation::compile(&recorder, &request) {
         Ok(simulation) => simulation,
         Err(error) => {
             messages.sources = (*error.sources).clone();
-            return Err(Failure { diagnostics: error.diagnostics });
+            return Err(CommandFailure { diagnostics: error.diagnostics });
         }
     };
     messages.sources = simulation.sources().clone();
     messages.say(&simulation.diagnostics);
-    let interface = Interface::new(&simulation, &args.outputs).map_err(|name| unknown(&simulation, &name))?;
+    let interface = FmiInterface::new(&simulation, &args.outputs).map_err(|name| unknown(&simulation, &name))?;
     let mut packed = recorder.packed(&request, &args.outputs, "");
     packed.token = token(&packed);
     let path = args.output_file.clone().unwrap_or_else(|| format!("{}.fmu", interface.class).into());
     files::ending(&path, "a unit", &["fmu"])?;
     let description = described(&request, &interface.class);
-    let unit = Contents { interface: &interface, packed: &packed, description, fmi: args.fmi };
+    let unit = FmuContents { interface: &interface, packed: &packed, description, fmi: args.fmi };
     let bytes = unit.write(&library, &network::write(&simulation.model().graph, &interface.class))?;
     let mut file = NewFile::create(&path)?;
     file.write_all(&bytes).map_err(|e| files::access(&path, "written", &e))?;
     file.finish()?;
-    let count = |c: Causality| interface.ports.iter().filter(|p| p.causality == c).count();
+    let count = |c: FmiCausality| interface.ports.iter().filter(|p| p.causality == c).count();
     let kinds = match interface.alone {
         None => "Co-Simulation and Model Exchange".to_owned(),
         Some(why) => format!("Co-Simulation (no Model Exchange: {why})"),
@@ -97,17 +97,17 @@ pub(super) fn run(args: &ExportArgs, messages: &mut Messages) -> Result<Ending, 
     messages.remark(&format!(
         "wrote {}: FMI {}, {}, {} parameters, {} inputs, {} outputs, {} MB",
         path.display(),
-        if args.fmi == Fmi::Two { "2.0" } else { "3.0" },
+        if args.fmi == FmiVersionArg::Two { "2.0" } else { "3.0" },
         kinds,
-        count(Causality::Parameter),
-        count(Causality::Input),
-        count(Causality::Output),
+        count(FmiCausality::Parameter),
+        count(FmiCausality::Input),
+        count(FmiCausality::Output),
         number::rounded(bytes.len() as f64 / 1e6, 2)
     ));
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
-fn unknown(simulation: &Simulation, pattern: &str) -> Failure {
+fn unknown(simulation: &Simulation, pattern: &str) -> CommandFailure {
     let d = Diagnostic::new(Code::BadArgument, format!("`--outputs {pattern}` matches no variable"));
     let names: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
     match nearest(pattern, names.iter().map(String::as_str)) {
@@ -118,7 +118,7 @@ fn unknown(simulation: &Simulation, pattern: &str) -> Failure {
 }
 
 /// Marks description and texts as belonging together: the same for the same unit.
-fn token(packed: &Packed) -> String {
+fn token(packed: &PackedRequest) -> String {
     let mut words = [0_u64; 2];
     for (seed, word) in (1..).zip(&mut words) {
         let mut hasher = FxHasher::default();
@@ -133,7 +133,7 @@ fn token(packed: &Packed) -> String {
 }
 
 /// The library that lies beside the command, where it was built, or where it was installed.
-fn runtime(given: Option<&Path>) -> Result<Vec<u8>, Failure> {
+fn runtime(given: Option<&Path>) -> Result<Vec<u8>, CommandFailure> {
     let candidates: Vec<PathBuf> = match given {
         Some(path) => vec![path.to_owned()],
         None => {
@@ -153,20 +153,21 @@ fn runtime(given: Option<&Path>) -> Result<Vec<u8>, Failure> {
 }
 
 /// What goes into a unit.
-struct Contents<'a> {
-    interface: &'a Interface,
-    packed: &'a Packed,
+struct FmuContents<'a> {
+    interface: &'a FmiInterface,
+    packed: &'a PackedRequest,
     description: String,
-    fmi: Fmi,
+    fmi: FmiVersionArg,
 }
 
-impl Contents<'_> {
-    fn write(&self, library: &[u8], picture: &str) -> Result<Vec<u8>, Failure> {
-        let failed =
-            |e: &dyn std::fmt::Display| Failure::new(Code::FileAccess, format!("the unit cannot be packed: {e}"));
-        let version = if self.fmi == Fmi::Two { Version::Two } else { Version::Three };
+impl FmuContents<'_> {
+    fn write(&self, library: &[u8], picture: &str) -> Result<Vec<u8>, CommandFailure> {
+        let failed = |e: &dyn std::fmt::Display| {
+            CommandFailure::new(Code::FileAccess, format!("the unit cannot be packed: {e}"))
+        };
+        let version = if self.fmi == FmiVersionArg::Two { FmiVersion::Two } else { FmiVersion::Three };
         let description = description::write(self.interface, version, &self.packed.token, &self.description);
-        let page = if self.fmi == Fmi::Two { "documentation/_main.html" } else { "documentation/index.html" };
+        let page = if self.fmi == FmiVersionArg::Two { "documentation/_main.html" } else { "documentation/index.html" };
         let licences = [include_str!("../../LICENSE-MIT"), include_str!("../../LICENSE-APACHE")].join("\n\n");
         let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
         // the same circuit gives the same bytes: no times
@@ -193,11 +194,11 @@ impl Contents<'_> {
     fn binary(&self) -> String {
         let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);
         let folder = match (self.fmi, os) {
-            (Fmi::Two, "macos") => "darwin64".to_owned(),
-            (Fmi::Two, "windows") => "win64".to_owned(),
-            (Fmi::Two, _) => "linux64".to_owned(),
-            (Fmi::Three, "macos") => format!("{arch}-darwin"),
-            (Fmi::Three, os) => format!("{arch}-{os}"),
+            (FmiVersionArg::Two, "macos") => "darwin64".to_owned(),
+            (FmiVersionArg::Two, "windows") => "win64".to_owned(),
+            (FmiVersionArg::Two, _) => "linux64".to_owned(),
+            (FmiVersionArg::Three, "macos") => format!("{arch}-darwin"),
+            (FmiVersionArg::Three, os) => format!("{arch}-{os}"),
         };
         format!("binaries/{folder}/{IDENTIFIER}{}", std::env::consts::DLL_SUFFIX)
     }
@@ -211,8 +212,11 @@ impl Contents<'_> {
              2px 0; text-align: left }}</style></head>\n<body><h1>{class}</h1>\n<p>{}</p>\n{picture}\n",
             escape(&self.description)
         );
-        let parts =
-            [("Parameters", Causality::Parameter), ("Inputs", Causality::Input), ("Outputs", Causality::Output)];
+        let parts = [
+            ("Parameters", FmiCausality::Parameter),
+            ("Inputs", FmiCausality::Input),
+            ("Outputs", FmiCausality::Output),
+        ];
         for (title, causality) in parts {
             let ports: Vec<_> = self.interface.ports.iter().filter(|p| p.causality == causality).collect();
             if ports.is_empty() {

@@ -4,19 +4,19 @@ use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
-use super::Failure;
+use super::CommandFailure;
 use bramah_syntax::diag::{Code, Diagnostic};
 use bramah_syntax::world::{DiskWorld, World, reason};
 
 /// A file that cannot be read or written.
-pub(super) fn access(path: &Path, verb: &str, error: &io::Error) -> Failure {
+pub(super) fn access(path: &Path, verb: &str, error: &io::Error) -> CommandFailure {
     Diagnostic::new(Code::FileAccess, format!("`{}` cannot be {verb}: {}", path.display(), reason(error))).into()
 }
 
-fn unwritable(path: &Path, error: &io::Error) -> Failure {
+fn unwritable(path: &Path, error: &io::Error) -> CommandFailure {
     if error.kind() == io::ErrorKind::NotFound {
         let text = format!("`{}` cannot be written: there is no such folder", path.display());
-        return Failure::new(Code::FileAccess, text);
+        return CommandFailure::new(Code::FileAccess, text);
     }
     access(path, "written", error)
 }
@@ -36,9 +36,9 @@ pub(super) struct NewFile {
 
 impl NewFile {
     /// Begins to write; fails at once where the folder is missing or not writable.
-    pub fn create(path: &Path) -> Result<Self, Failure> {
+    pub fn create(path: &Path) -> Result<Self, CommandFailure> {
         if path.is_dir() {
-            return Err(Failure::new(
+            return Err(CommandFailure::new(
                 Code::FileAccess,
                 format!("`{}` cannot be written: it is a folder", path.display()),
             ));
@@ -57,10 +57,10 @@ impl NewFile {
     }
 
     /// Begins to write, or goes on behind `written` bytes, under a name that lasts: `NAME.part`.
-    pub fn lasting(path: &Path, written: Option<u64>) -> Result<Self, Failure> {
+    pub fn lasting(path: &Path, written: Option<u64>) -> Result<Self, CommandFailure> {
         if path.exists() && !path.is_file() {
             let text = format!("`{}` cannot be written in parts: it is no plain file", path.display());
-            return Err(Failure::new(Code::FileAccess, text));
+            return Err(CommandFailure::new(Code::FileAccess, text));
         }
         let temporary = part(path);
         let file = match written {
@@ -72,13 +72,13 @@ impl NewFile {
     }
 
     /// Waits until the disk has everything that was handed to the system.
-    pub fn sync(&self) -> Result<(), Failure> {
+    pub fn sync(&self) -> Result<(), CommandFailure> {
         let synced = self.out.as_ref().map_or(Ok(()), |out| out.get_ref().sync_data());
         synced.map_err(|e| access(&self.temporary, "written", &e))
     }
 
     /// Everything is written: the file gets its name.
-    pub fn finish(mut self) -> Result<(), Failure> {
+    pub fn finish(mut self) -> Result<(), CommandFailure> {
         let failed = |e: io::Error| access(&self.path, "written", &e);
         if let Some(mut out) = self.out.take() {
             out.flush().map_err(failed)?;
@@ -124,13 +124,13 @@ impl Drop for NewFile {
 }
 
 /// Opens a file behind its first bytes; what follows them is lost.
-fn cut(path: &Path, bytes: u64) -> Result<File, Failure> {
+fn cut(path: &Path, bytes: u64) -> Result<File, CommandFailure> {
     let failed = |e: io::Error| access(path, "written", &e);
     let mut file = File::options().write(true).open(path).map_err(|e| access(path, "continued", &e))?;
     let length = file.metadata().map_err(failed)?.len();
     if length < bytes {
         let text = format!("`{}` cannot be continued: it is shorter than its checkpoint says", path.display());
-        return Err(Failure::new(Code::FileAccess, text));
+        return Err(CommandFailure::new(Code::FileAccess, text));
     }
     file.set_len(bytes).map_err(failed)?;
     file.seek(io::SeekFrom::End(0)).map_err(failed)?;
@@ -151,7 +151,7 @@ fn beside(path: &Path) -> PathBuf {
 }
 
 /// Writes a whole file.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), CommandFailure> {
     let mut file = NewFile::create(path)?;
     file.write_all(bytes).map_err(|e| access(path, "written", &e))?;
     file.finish()
@@ -159,7 +159,7 @@ pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// What a file's name asks for: its ending in lower case, which must be one of those that `what` can be written as. The
 /// first of them for stdout (`-`), devices, pipes and names without an ending.
-pub(super) fn ending(path: &Path, what: &str, known: &[&'static str]) -> Result<&'static str, Failure> {
+pub(super) fn ending(path: &Path, what: &str, known: &[&'static str]) -> Result<&'static str, CommandFailure> {
     let device = path.exists() && !path.is_file() && !path.is_dir();
     let Some(asked) = path.extension().filter(|_| !device) else { return Ok(known[0]) };
     let asked = asked.to_string_lossy().to_lowercase();
@@ -174,13 +174,13 @@ pub(super) fn ending(path: &Path, what: &str, known: &[&'static str]) -> Result<
 
 /// Says before the work what would be found out only after it: a folder that is missing or cannot be written to. A `-`
 /// is stdout, and a pipe is opened once only, for whoever reads takes its closing for the end.
-pub(super) fn ready(path: &Path) -> Result<(), Failure> {
+pub(super) fn ready(path: &Path) -> Result<(), CommandFailure> {
     let pipe = path.exists() && !path.is_file() && !path.is_dir();
     if path == Path::new("-") || pipe { Ok(()) } else { NewFile::create(path).map(drop) }
 }
 
 /// Says before the work that a file cannot be written, by its name or its place: [`ending`] and [`ready`].
-pub(super) fn ready_as(path: &Path, what: &str, known: &[&'static str]) -> Result<(), Failure> {
+pub(super) fn ready_as(path: &Path, what: &str, known: &[&'static str]) -> Result<(), CommandFailure> {
     ending(path, what, known)?;
     ready(path)
 }
@@ -201,7 +201,7 @@ pub(super) fn modelica_below(folder: &Path, skipped: &dyn Fn(&str) -> bool) -> V
 }
 
 /// Writes to stdout. A reader that has gone away (`| head`) is no mistake.
-pub(super) fn print(text: &str) -> Result<(), Failure> {
+pub(super) fn print(text: &str) -> Result<(), CommandFailure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(access(Path::new("stdout"), "written", &e)),

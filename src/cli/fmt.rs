@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::messages::Messages;
-use super::{Ending, Failure, files};
+use super::messages::MessageReporter;
+use super::{CommandFailure, CommandStatus, files};
 use bramah_syntax::diag::Code;
 use bramah_syntax::format::format;
 use bramah_syntax::world::DiskWorld;
@@ -30,21 +30,21 @@ pub(super) struct FmtArgs {
     check: bool,
 }
 
-pub(super) fn run(args: &FmtArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &FmtArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let within = |path: &PathBuf| match path.is_dir() {
         true => files::modelica_below(path, &|_| false),
         false => vec![path.clone()],
     };
     let all: Vec<PathBuf> = args.paths.iter().flat_map(within).collect();
-    let mut ending = Ending::Fine;
+    let mut ending = CommandStatus::Fine;
     for path in &all {
         match one(path, args.check, messages) {
-            Ok(Ending::Fine) => {}
-            Ok(Ending::Wrong) => ending = Ending::Wrong,
+            Ok(CommandStatus::Fine) => {}
+            Ok(CommandStatus::Wrong) => ending = CommandStatus::Wrong,
             // the others are laid out all the same
             Err(failure) if all.len() > 1 && failure.exit_code(&messages.sources) == 1 => {
                 messages.say(&failure.diagnostics);
-                ending = Ending::Wrong;
+                ending = CommandStatus::Wrong;
             }
             Err(failure) => return Err(failure),
         }
@@ -52,33 +52,33 @@ pub(super) fn run(args: &FmtArgs, messages: &mut Messages) -> Result<Ending, Fai
     Ok(ending)
 }
 
-fn one(path: &Path, check: bool, messages: &mut Messages) -> Result<Ending, Failure> {
+fn one(path: &Path, check: bool, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let stdin = path == Path::new("-");
     let text = if stdin { from_stdin()? } else { read(path)? };
     let file = messages.sources.add(path.display().to_string(), text.clone());
-    let laid_out = format(file, &text).map_err(|diagnostics| Failure { diagnostics })?;
+    let laid_out = format(file, &text).map_err(|diagnostics| CommandFailure { diagnostics })?;
     if stdin && !check {
         files::print(&laid_out)?;
-        return Ok(Ending::Fine);
+        return Ok(CommandStatus::Fine);
     }
     if laid_out == text {
-        return Ok(Ending::Fine);
+        return Ok(CommandStatus::Fine);
     }
     if check {
         files::print(&format!("{}\n", path.display()))?;
-        return Ok(Ending::Wrong);
+        return Ok(CommandStatus::Wrong);
     }
     files::write(path, laid_out.as_bytes())?;
     messages.remark(&format!("laid out {}", path.display()));
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
-fn read(path: &Path) -> Result<String, Failure> {
-    let unreadable = |why| Failure::new(Code::FileAccess, format!("`{}` cannot be read: {why}", path.display()));
+fn read(path: &Path) -> Result<String, CommandFailure> {
+    let unreadable = |why| CommandFailure::new(Code::FileAccess, format!("`{}` cannot be read: {why}", path.display()));
     DiskWorld.read(path).map_err(unreadable)
 }
 
-fn from_stdin() -> Result<String, Failure> {
+fn from_stdin() -> Result<String, CommandFailure> {
     let mut text = String::new();
     let read = std::io::stdin().read_to_string(&mut text);
     read.map_err(|e| files::access(Path::new("-"), "read", &e))?;

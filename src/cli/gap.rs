@@ -5,16 +5,16 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::messages::Messages;
+use super::messages::MessageReporter;
 use super::recorder::write_text;
-use super::{Ending, Failure, files};
+use super::{CommandFailure, CommandStatus, files};
 use bramah_analysis::study::Study;
 use bramah_gap::hypotheses::Hypothesis;
 use bramah_gap::plan::plan;
 use bramah_gap::select::search::Stage;
-use bramah_gap::study::{Unusable, planned, proposed, question};
+use bramah_gap::study::{StudyError, planned, proposed, question};
 use bramah_gap::{Budget, DiagnoseOptions, Diagnosis};
-use bramah_syntax::diag::{Checked, Code, Diagnostic};
+use bramah_syntax::diag::{Code, Diagnostic, StageResult};
 use bramah_syntax::world::DiskWorld;
 
 /// Find where model and machine differ, and which missing effect explains it
@@ -63,12 +63,12 @@ pub(super) struct GapArgs {
     plan: bool,
 }
 
-pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &GapArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let read = Study::read(&DiskWorld, &args.study, &mut messages.sources);
     let study = messages.value(read)?;
     if args.list {
         let (all, warnings) = proposed(&DiskWorld, &study).map_err(|why| unusable(why, messages))?;
-        files::print(&listed(&messages.value(Checked::new(all, warnings))?))?;
+        files::print(&listed(&messages.value(StageResult::new(all, warnings))?))?;
         let folder = args.data.as_deref().unwrap_or(&study.folder);
         let there = |file: &str| folder.join(file).is_file();
         let missing = study.recordings.iter().filter(|r| !r.optional && !there(&r.file)).map(|r| r.file.as_str());
@@ -76,7 +76,7 @@ pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Fai
         if !missing.is_empty() {
             messages.remark(&format!("recordings of the study that are not there yet: {}", missing.join(", ")));
         }
-        return Ok(Ending::Fine);
+        return Ok(CommandStatus::Fine);
     }
     let outputs = [
         (Some(&args.output), "a verdict", "json"),
@@ -89,12 +89,12 @@ pub(super) fn run(args: &GapArgs, messages: &mut Messages) -> Result<Ending, Fai
     if args.plan { weigh_plan(args, &study, messages) } else { diagnose(args, &study, messages) }
 }
 
-fn weigh_plan(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<Ending, Failure> {
+fn weigh_plan(args: &GapArgs, study: &Study, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let data = args.data.as_deref();
     let mut question =
         planned(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
     messages.say(&question.diagnostics);
-    let stages = Stages::new();
+    let stages = StageBar::new();
     let found = plan(&mut question.problem, &mut |stage| stages.say(stage));
     stages.clear();
     let Some(found) = found else {
@@ -105,19 +105,19 @@ fn weigh_plan(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<
     messages.remark(found.words().trim_end());
     let text = serde_json::to_string_pretty(&found).expect("numbers and texts always serialize");
     write_text(&args.output, &format!("{text}\n"))?;
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
-fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<Ending, Failure> {
+fn diagnose(args: &GapArgs, study: &Study, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let begun = std::time::Instant::now();
     let data = args.data.as_deref();
     let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
     messages.say(&question.diagnostics);
-    let held = question.held(data, &mut messages.sources).map_err(|diagnostics| Failure { diagnostics })?;
+    let held = question.held(data, &mut messages.sources).map_err(|diagnostics| CommandFailure { diagnostics })?;
     if held.recordings.is_empty() {
         messages.remark("There are no held recordings: the gap is that on the recordings that were used.");
     }
-    let stages = Stages::new();
+    let stages = StageBar::new();
     let mut show = |stage: Stage| {
         stages.say(&stage.to_string());
         ControlFlow::Continue(())
@@ -127,7 +127,7 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     let options = DiagnoseOptions { data, budget: Some(budget), effect: args.explain_rejected.as_deref() };
     let diagnosis = Diagnosis::new(question, held, options, &mut show);
     stages.clear();
-    let mut diagnosis = diagnosis.map_err(|diagnostics| Failure { diagnostics })?;
+    let mut diagnosis = diagnosis.map_err(|diagnostics| CommandFailure { diagnostics })?;
     diagnosis.took(begun.elapsed().as_secs_f64());
     messages.remark(diagnosis.words().trim_end());
     let text = serde_json::to_string_pretty(diagnosis.verdict()).expect("numbers and texts always serialize");
@@ -138,22 +138,22 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut Messages) -> Result<En
     if let Some(file) = &args.report {
         write_text(file, &diagnosis.report())?;
     }
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
 /// The stages of a diagnosis as a line on a terminal.
-struct Stages {
+struct StageBar {
     bar: Option<indicatif::ProgressBar>,
 }
 
-impl Stages {
+impl StageBar {
     fn new() -> Self {
         let terminal = std::io::IsTerminal::is_terminal(&std::io::stderr());
         let bar = terminal.then(indicatif::ProgressBar::new_spinner);
         if let Some(bar) = &bar {
             bar.enable_steady_tick(Duration::from_millis(200));
         }
-        Stages { bar }
+        StageBar { bar }
     }
 
     fn say(&self, stage: &str) {
@@ -170,11 +170,11 @@ impl Stages {
 }
 
 /// What stops a study: its own mistakes, or those of its model with the texts they point into.
-fn unusable(why: Unusable, messages: &mut Messages) -> Failure {
+fn unusable(why: StudyError, messages: &mut MessageReporter) -> CommandFailure {
     if let Some(sources) = why.sources {
         messages.sources = sources;
     }
-    Failure { diagnostics: why.diagnostics }
+    CommandFailure { diagnostics: why.diagnostics }
 }
 
 /// One line a hypothesis, and a count.

@@ -4,15 +4,16 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::messages::Messages;
+use super::messages::MessageReporter;
 use super::recorder::write_text;
-use super::study::{Opened, open};
-use super::{Ending, Failure, files, plot};
+use super::study::{StudySession, open};
+use super::{CommandFailure, CommandStatus, files, plot};
 use bramah_analysis::identify::{
-    Fit, Identification, Method, Problem, Profile, Report, doubts, fit_words, picture, profile_words, separation_words,
+    Identification, IdentificationProblem, IdentificationReport, IdentifyMethod, ParameterFit, ProfileLikelihood,
+    doubts, fit_words, picture, profile_words, separation_words,
 };
-use bramah_analysis::study::Role;
-use bramah_results::Globs;
+use bramah_analysis::study::RecordingRole;
+use bramah_results::GlobPatterns;
 use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Find parameters from recordings of a test rig
@@ -67,31 +68,31 @@ enum MethodArg {
 }
 
 impl MethodArg {
-    fn method(self) -> Method {
+    fn method(self) -> IdentifyMethod {
         match self {
-            MethodArg::Auto => Method::Auto,
-            MethodArg::Output => Method::Output,
-            MethodArg::Inverse => Method::Inverse,
+            MethodArg::Auto => IdentifyMethod::Auto,
+            MethodArg::Output => IdentifyMethod::Output,
+            MethodArg::Inverse => IdentifyMethod::Inverse,
         }
     }
 }
 
-pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &IdentifyArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     // what cannot be written is reported before the fit, which may take long
     files::ready_as(Path::new(&args.output), "a report", &["json"])?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let mut opened = open(&args.study, args.data.as_deref(), messages)?;
-    let train = opened.load(Role::Train, messages)?;
+    let train = opened.load(RecordingRole::Train, messages)?;
     let model = opened.model.clone();
     let bound = opened.bound.clone();
-    let problem = Problem::new(&model, &bound, &train).map_err(|d| opened.failure(d, messages))?;
-    let fail = |d, opened: &Opened, messages: &mut Messages| opened.failure(vec![d], messages);
+    let problem = IdentificationProblem::new(&model, &bound, &train).map_err(|d| opened.failure(d, messages))?;
+    let fail = |d, opened: &StudySession, messages: &mut MessageReporter| opened.failure(vec![d], messages);
     let profiled = profiled(args, &problem).map_err(|d| fail(d, &opened, messages))?;
     let found = Identification::new(&problem, &train, args.method.method()).map_err(|d| fail(d, &opened, messages))?;
     messages.say(&found.suspicions);
     messages.remark(separation_words(&problem, &found).trim_end());
     let fit = found.fit_from(args.starts.into(), args.seed).map_err(|d| fail(d, &opened, messages))?;
-    let held = if bound.has(Role::Held) { opened.load(Role::Held, messages)? } else { Vec::new() };
+    let held = if bound.has(RecordingRole::Held) { opened.load(RecordingRole::Held, messages)? } else { Vec::new() };
     let held = if held.is_empty() {
         Vec::new()
     } else {
@@ -99,7 +100,8 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
     };
     messages.say(&doubts(&problem, &fit, &held));
     messages.remark(fit_words(&problem, &fit, &held).trim_end());
-    let profiles: Result<Vec<Profile>, Diagnostic> = profiled.into_iter().map(|j| found.profile(&fit, j)).collect();
+    let profiles: Result<Vec<ProfileLikelihood>, Diagnostic> =
+        profiled.into_iter().map(|j| found.profile(&fit, j)).collect();
     let profiles = profiles.map_err(|d| fail(d, &opened, messages))?;
     if !profiles.is_empty() {
         messages.remark(profile_words(&problem, &profiles).trim_end());
@@ -107,16 +109,16 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut Messages) -> Result<Ending
     if let Some(path) = &args.plot {
         plot::write(&picture(&problem, &fit, &profiles), &facts(&problem, &fit), path, messages)?;
     }
-    let report = Report::new(&problem, &found, &fit, &held, &profiles);
+    let report = IdentificationReport::new(&problem, &found, &fit, &held, &profiles);
     let text = serde_json::to_string_pretty(&report).expect("numbers and texts always serialize");
     write_text(&args.output, &format!("{text}\n"))?;
-    Ok(if fit.converged { Ending::Fine } else { Ending::Wrong })
+    Ok(if fit.converged { CommandStatus::Fine } else { CommandStatus::Wrong })
 }
 
 /// The parameters whose profiles are asked for.
-fn profiled(args: &IdentifyArgs, problem: &Problem<'_>) -> Result<Vec<usize>, Diagnostic> {
+fn profiled(args: &IdentifyArgs, problem: &IdentificationProblem<'_>) -> Result<Vec<usize>, Diagnostic> {
     let Some(asked) = &args.profile else { return Ok(Vec::new()) };
-    let globs = Globs::new(std::slice::from_ref(asked));
+    let globs = GlobPatterns::new(std::slice::from_ref(asked));
     let chosen: Vec<usize> = (0..problem.free.len()).filter(|&j| globs.matches(&problem.free[j].name)).collect();
     if chosen.is_empty() {
         let d = Diagnostic::new(Code::BadArgument, format!("no parameter of the study fits `--profile={asked}`"));
@@ -126,7 +128,7 @@ fn profiled(args: &IdentifyArgs, problem: &Problem<'_>) -> Result<Vec<usize>, Di
 }
 
 /// What stands below the picture in a page.
-fn facts(problem: &Problem<'_>, fit: &Fit) -> Vec<(String, String)> {
+fn facts(problem: &IdentificationProblem<'_>, fit: &ParameterFit) -> Vec<(String, String)> {
     let words = fit_words(problem, fit, &[]);
     words.lines().filter_map(|l| l.trim().split_once([' ', ':'])).map(|(a, b)| (a.into(), b.trim().into())).collect()
 }

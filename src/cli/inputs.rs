@@ -3,29 +3,29 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::messages::Messages;
-use super::{Failure, data};
-use bramah_analysis::experiment::{Experiment, Hold, InputMap};
+use super::messages::MessageReporter;
+use super::{CommandFailure, data};
+use bramah_analysis::experiment::{ExperimentSpecification, InputHold, InputMap};
 use bramah_expr::VarId;
-use bramah_expr::units::Unit;
-use bramah_model::flat::{Type, Variable};
+use bramah_expr::units::MeasurementUnit;
+use bramah_model::flat::{FlatVariable, ScalarType};
 use bramah_model::structure::Dae;
-use bramah_results::{Strictness, Trajectory, contradiction, number, read_csv};
-use bramah_solve::{Input, Interpolation, missing_inputs};
+use bramah_results::{ReadStrictness, Trajectory, contradiction, number, read_csv};
+use bramah_solve::{Interpolation, RecordedInput, missing_inputs};
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
 /// The inputs of a run, and the time that their recording covers.
 #[derive(Debug, Default)]
-pub(super) struct Recorded {
+pub(super) struct InputRecording {
     /// One entry an input that the recording drives.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<RecordedInput>,
     /// First and last time of the recording, and its usual step.
-    pub covered: Option<Covered>,
+    pub covered: Option<RecordingSpan>,
 }
 
 /// The time that a recording covers, in seconds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Covered {
+pub(super) struct RecordingSpan {
     /// Of the first row.
     pub start: f64,
     /// Of the last row.
@@ -35,7 +35,11 @@ pub(super) struct Covered {
 }
 
 /// Reads the recording that an experiment names, and checks that every input of the model has a value.
-pub(super) fn prepare(experiment: &Experiment, dae: &Dae, messages: &mut Messages) -> Result<Recorded, Failure> {
+pub(super) fn prepare(
+    experiment: &ExperimentSpecification,
+    dae: &Dae,
+    messages: &mut MessageReporter,
+) -> Result<InputRecording, CommandFailure> {
     for entry in &experiment.map {
         if input(dae, &entry.input).is_none() {
             return Err(no_input(dae, &entry.input).into());
@@ -46,13 +50,13 @@ pub(super) fn prepare(experiment: &Experiment, dae: &Dae, messages: &mut Message
             let text = format!("the input `{}` is mapped to a column, but there is no recording", entry.input);
             return Err(Diagnostic::new(Code::BadMap, text).help("name it: --input bench.csv").into());
         }
-        return all_driven(dae, &[]).map(|()| Recorded::default());
+        return all_driven(dae, &[]).map(|()| InputRecording::default());
     };
     let path = Path::new(file);
     let id = data::text(path, messages)?;
     let entries = entries(experiment, dae, messages.sources.get(id).text.as_str());
     let columns: Vec<String> = entries.iter().map(|e| e.column.clone()).collect();
-    let strictness = Strictness::Inputs(&columns);
+    let strictness = ReadStrictness::Inputs(&columns);
     let checked = read_csv(&messages.sources, id, experiment.time_column.as_deref(), strictness);
     let recording = messages.value(checked)?;
     let times: Arc<[f64]> = recording.times.as_slice().into();
@@ -73,7 +77,7 @@ pub(super) fn prepare(experiment: &Experiment, dae: &Dae, messages: &mut Message
             return Err(d.note(said).help(help).into());
         }
     }
-    Ok(Recorded { inputs, covered: covered(&recording) })
+    Ok(InputRecording { inputs, covered: covered(&recording) })
 }
 
 fn input(dae: &Dae, name: &str) -> Option<VarId> {
@@ -81,7 +85,7 @@ fn input(dae: &Dae, name: &str) -> Option<VarId> {
 }
 
 /// The entries of `--map`, and for other inputs the column of equal name where there is one.
-fn entries(experiment: &Experiment, dae: &Dae, text: &str) -> Vec<InputMap> {
+fn entries(experiment: &ExperimentSpecification, dae: &Dae, text: &str) -> Vec<InputMap> {
     let mut entries = experiment.map.clone();
     let columns = bramah_results::recording::column_names(text);
     for v in &dae.inputs {
@@ -100,38 +104,38 @@ fn track(
     recording: &Trajectory,
     column: usize,
     times: &Arc<[f64]>,
-    usual: Option<Hold>,
-) -> Result<Input, Failure> {
+    usual: Option<InputHold>,
+) -> Result<RecordedInput, CommandFailure> {
     let target = &dae.variables[variable.index()];
     let unit = entry.unit.as_deref().unwrap_or(&recording.signals[column].unit);
     let mut values = recording.columns[column].clone();
     convert(&mut values, unit, target, entry)?;
-    if target.ty != Type::Real
+    if target.ty != ScalarType::Real
         && let Some(value) = values.iter().find(|v| v.fract() != 0.0)
     {
         let text = format!("`{}` takes whole numbers, the column `{}` holds {value}", target.name, entry.column);
-        return Err(Failure::new(Code::BadMap, text));
+        return Err(CommandFailure::new(Code::BadMap, text));
     }
     let values: Arc<[f64]> = values.into();
-    let linear = target.ty == Type::Real && entry.hold.or(usual) == Some(Hold::Linear);
+    let linear = target.ty == ScalarType::Real && entry.hold.or(usual) == Some(InputHold::Linear);
     let interpolation = if linear { Interpolation::Linear } else { Interpolation::Held };
-    Ok(Input { variable, times: times.clone(), values, interpolation })
+    Ok(RecordedInput { variable, times: times.clone(), values, interpolation })
 }
 
 /// A note where inputs that rise or fall over rows on end hold their samples because nobody said how they run between
 /// them. A command that steps up and back does not: it holds by itself.
 fn held_without_asking(
-    experiment: &Experiment,
+    experiment: &ExperimentSpecification,
     entries: &[InputMap],
     dae: &Dae,
-    inputs: &[Input],
+    inputs: &[RecordedInput],
 ) -> Option<Diagnostic> {
     let asked = |v: VarId| {
         let name = &dae.variables[v.index()].name;
         experiment.interpolation.is_some() || entries.iter().any(|e| &e.input == name && e.hold.is_some())
     };
-    let rises = |i: &Input| i.values.windows(3).any(|v| (v[1] - v[0]) * (v[2] - v[1]) > 0.0);
-    let real = |i: &Input| dae.variables[i.variable.index()].ty == Type::Real;
+    let rises = |i: &RecordedInput| i.values.windows(3).any(|v| (v[1] - v[0]) * (v[2] - v[1]) > 0.0);
+    let real = |i: &RecordedInput| dae.variables[i.variable.index()].ty == ScalarType::Real;
     let held = inputs.iter().filter(|i| real(i) && !asked(i.variable) && rises(i));
     let names: Vec<String> = held.map(|i| format!("`{}`", dae.variables[i.variable.index()].name)).collect();
     let (first, rest) = names.split_first()?;
@@ -142,18 +146,18 @@ fn held_without_asking(
 }
 
 /// From the unit of the column to that of the variable.
-fn convert(values: &mut [f64], unit: &str, target: &Variable, entry: &InputMap) -> Result<(), Failure> {
+fn convert(values: &mut [f64], unit: &str, target: &FlatVariable, entry: &InputMap) -> Result<(), CommandFailure> {
     let Some(wanted) = target.unit.as_deref().filter(|u| !u.is_empty() && !unit.is_empty() && *u != unit) else {
         return Ok(());
     };
     let wrong = |why: String| {
-        Failure::from(
+        CommandFailure::from(
             Diagnostic::new(Code::BadMap, why)
                 .help(format!("say it: --map '{}={}[{wanted}]'", entry.input, entry.column)),
         )
     };
-    let from = Unit::parse(unit).map_err(|e| wrong(format!("column `{}`: {e}", entry.column)))?;
-    let Ok(to) = Unit::parse(wanted) else { return Ok(()) };
+    let from = MeasurementUnit::parse(unit).map_err(|e| wrong(format!("column `{}`: {e}", entry.column)))?;
+    let Ok(to) = MeasurementUnit::parse(wanted) else { return Ok(()) };
     if from.convert(0.0, &to).is_none() {
         let text = format!("the column `{}` is in `{unit}`, the input `{}` in `{wanted}`", entry.column, target.name);
         return Err(wrong(text));
@@ -164,7 +168,7 @@ fn convert(values: &mut [f64], unit: &str, target: &Variable, entry: &InputMap) 
 }
 
 /// Says which inputs have neither a recording nor a value of their own.
-fn all_driven(dae: &Dae, inputs: &[Input]) -> Result<(), Failure> {
+fn all_driven(dae: &Dae, inputs: &[RecordedInput]) -> Result<(), CommandFailure> {
     let help = |name: &str| {
         vec![
             format!("drive it by a recording: --input bench.csv --map '{name}=COLUMN'"),
@@ -172,7 +176,7 @@ fn all_driven(dae: &Dae, inputs: &[Input]) -> Result<(), Failure> {
         ]
     };
     let diagnostics = missing_inputs(dae, inputs, help);
-    if diagnostics.is_empty() { Ok(()) } else { Err(Failure { diagnostics }) }
+    if diagnostics.is_empty() { Ok(()) } else { Err(CommandFailure { diagnostics }) }
 }
 
 fn no_input(dae: &Dae, name: &str) -> Diagnostic {
@@ -186,14 +190,14 @@ fn no_input(dae: &Dae, name: &str) -> Diagnostic {
     }
 }
 
-fn covered(recording: &Trajectory) -> Option<Covered> {
+fn covered(recording: &Trajectory) -> Option<RecordingSpan> {
     let (start, stop) = (*recording.times.first()?, *recording.times.last()?);
     let intervals = recording.len().saturating_sub(1).max(1);
-    Some(Covered { start, stop, step: (stop - start) / intervals as f64 })
+    Some(RecordingSpan { start, stop, step: (stop - start) / intervals as f64 })
 }
 
 /// A run must not go beyond its recording, but for the last sample's own step.
-pub(super) fn check_cover(covered: Covered, start: f64, stop: f64) -> Result<(), Failure> {
+pub(super) fn check_cover(covered: RecordingSpan, start: f64, stop: f64) -> Result<(), CommandFailure> {
     let slack = 1.01 * covered.step + 1e-9 * (covered.stop - covered.start).abs();
     if start >= covered.start - slack && stop <= covered.stop + slack {
         return Ok(());

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::axes::Entry;
-use super::messages::Messages;
+use super::axes::AxisOption;
+use super::messages::MessageReporter;
 use super::recorder::write_text;
 use super::request::ModelArgs;
-use super::{Ending, Failure, files, interrupt, model, plot};
+use super::{CommandFailure, CommandStatus, files, interrupt, model, plot};
 use bramah_analysis::experiment::seconds;
-use bramah_analysis::linear::{self, Choice, Chosen, StateSpace};
+use bramah_analysis::linear::{self, InputOutputSelection, LinearizationSetup, StateSpace};
 use bramah_analysis::steady;
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
@@ -70,7 +70,7 @@ fn time(text: &str) -> Result<f64, String> {
     seconds(text.strip_prefix("t=").or_else(|| text.strip_prefix("time=")).unwrap_or(text))
 }
 
-pub(super) fn run(args: &LinearizeArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &LinearizeArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     fits(args)?;
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
@@ -81,9 +81,9 @@ pub(super) fn run(args: &LinearizeArgs, messages: &mut Messages) -> Result<Endin
 }
 
 /// What is asked for together must have a meaning together; and files can be written, as is found out before the work.
-fn fits(args: &LinearizeArgs) -> Result<(), Failure> {
+fn fits(args: &LinearizeArgs) -> Result<(), CommandFailure> {
     let wrong = |text: String, cause: &str, help: &str| {
-        Err(Failure::from(Diagnostic::new(Code::BadArgument, text).note(cause).help(help)))
+        Err(CommandFailure::from(Diagnostic::new(Code::BadArgument, text).note(cause).help(help)))
     };
     if args.schedule.is_empty() {
         if let Some(grid) = args.grid.first() {
@@ -119,9 +119,14 @@ fn list(flags: &[String]) -> Vec<String> {
     flags.iter().flat_map(|f| split_list(f)).collect()
 }
 
-fn linear_model(args: &LinearizeArgs, model: &CompiledModel, messages: &Messages) -> Result<Ending, Failure> {
-    let choice = Choice { inputs: list(&args.inputs), outputs: list(&args.outputs) };
-    let chosen = Chosen::new(&model.flat, &choice, &[]).map_err(|diagnostics| Failure { diagnostics })?;
+fn linear_model(
+    args: &LinearizeArgs,
+    model: &CompiledModel,
+    messages: &MessageReporter,
+) -> Result<CommandStatus, CommandFailure> {
+    let choice = InputOutputSelection { inputs: list(&args.inputs), outputs: list(&args.outputs) };
+    let chosen =
+        LinearizationSetup::new(&model.flat, &choice, &[]).map_err(|diagnostics| CommandFailure { diagnostics })?;
     let state = operating_point(args, model, &chosen)?;
     let linear = linear::linearize(model, &chosen, &state).map_err(|e| no_values(&e.to_string()))?;
     let words = linear::words(&linear);
@@ -149,18 +154,18 @@ fn linear_model(args: &LinearizeArgs, model: &CompiledModel, messages: &Messages
     if let Some(path) = &args.poles {
         picture(&linear::plane(&linear, &poles), path)?;
     }
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
-fn linear_ending(path: &str) -> Result<&'static str, Failure> {
+fn linear_ending(path: &str) -> Result<&'static str, CommandFailure> {
     files::ending(Path::new(path), "a linear model", &["json", "csv", "mat", "mo"])
 }
 
-fn quasi_linear_ending(path: &str) -> Result<&'static str, Failure> {
+fn quasi_linear_ending(path: &str) -> Result<&'static str, CommandFailure> {
     files::ending(Path::new(path), "a quasi-linear form", &["json", "csv", "mat", "mo"])
 }
 
-fn write(linear: &StateSpace, path: &str, messages: &Messages) -> Result<(), Failure> {
+fn write(linear: &StateSpace, path: &str, messages: &MessageReporter) -> Result<(), CommandFailure> {
     match linear_ending(path)? {
         "csv" => write_text(path, &linear::csv(linear))?,
         "mo" => write_text(path, &linear::modelica(linear, &plot::stem(Path::new(path))))?,
@@ -179,7 +184,11 @@ fn pretty(value: &serde_json::Value) -> String {
 }
 
 /// The state at the time asked for, or the steady state reached from there.
-fn operating_point(args: &LinearizeArgs, model: &CompiledModel, chosen: &Chosen) -> Result<State, Failure> {
+fn operating_point(
+    args: &LinearizeArgs,
+    model: &CompiledModel,
+    chosen: &LinearizationSetup,
+) -> Result<State, CommandFailure> {
     let state = state_at(model, args.at)?.0;
     if !args.steady {
         return Ok(state);
@@ -187,12 +196,12 @@ fn operating_point(args: &LinearizeArgs, model: &CompiledModel, chosen: &Chosen)
     steady::rest(model, chosen, &state, interrupt::flag()).map_err(|why| why.said(chosen).into())
 }
 
-fn no_values(why: &str) -> Failure {
-    Failure::new(Code::NonFinite, format!("the model has no derivatives at this point: {why}"))
+fn no_values(why: &str) -> CommandFailure {
+    CommandFailure::new(Code::NonFinite, format!("the model has no derivatives at this point: {why}"))
 }
 
 /// A run up to a time, or to no time at all, with the rows it made.
-pub(super) fn state_at(model: &CompiledModel, time: Option<f64>) -> Result<(State, Trajectory), Failure> {
+pub(super) fn state_at(model: &CompiledModel, time: Option<f64>) -> Result<(State, Trajectory), CommandFailure> {
     let mut settings = Settings::from_experiment(&model.dae.experiment);
     if let Some(time) = time.filter(|t| *t < settings.start_time) {
         let (time, start) = (number::rounded(time, 9), number::rounded(settings.start_time, 9));
@@ -205,19 +214,23 @@ pub(super) fn state_at(model: &CompiledModel, time: Option<f64>) -> Result<(Stat
 }
 
 /// A run, with its rows.
-pub(super) fn run_to(model: &CompiledModel, settings: &Settings) -> Result<(State, Trajectory), Failure> {
+pub(super) fn run_to(model: &CompiledModel, settings: &Settings) -> Result<(State, Trajectory), CommandFailure> {
     let mut rows = Trajectory::new(signals(&model.dae, &settings.wanted));
     let mut reselect = |choice: &StateChoice| model.with_states(choice);
     let mut control =
         Control { interrupt: Some(interrupt::flag()), reselect: Some(&mut reselect), ..Control::default() };
     let run = simulate(&model.system, settings, &[], None, &mut rows, &mut control);
-    if run.end.is_success() { Ok((run.state, rows)) } else { Err(Failure { diagnostics: run.diagnostics }) }
+    if run.end.is_success() { Ok((run.state, rows)) } else { Err(CommandFailure { diagnostics: run.diagnostics }) }
 }
 
-fn quasi_linear(args: &LinearizeArgs, model: &CompiledModel, messages: &Messages) -> Result<Ending, Failure> {
+fn quasi_linear(
+    args: &LinearizeArgs,
+    model: &CompiledModel,
+    messages: &MessageReporter,
+) -> Result<CommandStatus, CommandFailure> {
     let rho = list(&args.schedule);
-    let chosen =
-        Chosen::scheduled(&model.flat, &list(&args.inputs), &rho).map_err(|diagnostics| Failure { diagnostics })?;
+    let chosen = LinearizationSetup::scheduled(&model.flat, &list(&args.inputs), &rho)
+        .map_err(|diagnostics| CommandFailure { diagnostics })?;
     let state = operating_point(args, model, &chosen)?;
     let ranges = ranges(model, &chosen, &state)?;
     let grid = grid(args, &chosen)?;
@@ -225,7 +238,7 @@ fn quasi_linear(args: &LinearizeArgs, model: &CompiledModel, messages: &Messages
     let words = found.words();
     let Some(path) = &args.output_file else {
         files::print(&words)?;
-        return Ok(Ending::Fine);
+        return Ok(CommandStatus::Fine);
     };
     match quasi_linear_ending(path)? {
         "csv" => write_text(path, &found.csv())?,
@@ -234,12 +247,16 @@ fn quasi_linear(args: &LinearizeArgs, model: &CompiledModel, messages: &Messages
         _ => write_text(path, &pretty(&found.json()))?,
     }
     messages.remark(words.trim_end());
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
 /// Smallest and largest values of states and inputs: those of a run, widened by a tenth; of quantities that do not move
 /// a fifth of their value to both sides.
-fn ranges(model: &CompiledModel, chosen: &Chosen, state: &State) -> Result<Vec<(f64, f64)>, Failure> {
+fn ranges(
+    model: &CompiledModel,
+    chosen: &LinearizationSetup,
+    state: &State,
+) -> Result<Vec<(f64, f64)>, CommandFailure> {
     let mut settings = Settings::from_experiment(&model.dae.experiment);
     let all: Vec<VarId> = chosen.quantities().collect();
     settings.wanted = all.iter().copied().filter(|v| v.index() < model.dae.variables.len()).collect();
@@ -257,10 +274,10 @@ fn ranges(model: &CompiledModel, chosen: &Chosen, state: &State) -> Result<Vec<(
 }
 
 /// The values asked for each scheduling quantity.
-fn grid(args: &LinearizeArgs, chosen: &Chosen) -> Result<Vec<Option<Vec<f64>>>, Failure> {
+fn grid(args: &LinearizeArgs, chosen: &LinearizationSetup) -> Result<Vec<Option<Vec<f64>>>, CommandFailure> {
     let mut all: Vec<Option<Vec<f64>>> = vec![None; chosen.rho().len()];
     for text in &args.grid {
-        let entry = Entry::parse("--grid", text)?;
+        let entry = AxisOption::parse("--grid", text)?;
         let k = chosen.rho().iter().position(|r| r.name == entry.name);
         let k = k.ok_or_else(|| entry.wrong("it is not a scheduling quantity"))?;
         if all[k].is_some() {

@@ -2,9 +2,9 @@
 
 use std::io::{IsTerminal, Write};
 
-use super::Failure;
-use bramah_syntax::diag::render::{Format, render};
-use bramah_syntax::diag::{Checked, Diagnostic, Severity, Sources};
+use super::CommandFailure;
+use bramah_syntax::diag::render::{DiagnosticFormat, render};
+use bramah_syntax::diag::{Diagnostic, Severity, Sources, StageResult};
 
 /// `--message-format`
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
@@ -20,40 +20,43 @@ pub(super) enum MessageFormat {
 
 /// The texts read so far, and the way to talk about them.
 #[derive(Debug)]
-pub(super) struct Messages {
+pub(super) struct MessageReporter {
     /// Texts that diagnostics point into.
     pub sources: Sources,
-    format: Format,
+    format: DiagnosticFormat,
     colour: bool,
     width: usize,
     silent: bool,
 }
 
-impl Messages {
+impl MessageReporter {
     /// Colour on a terminal only, and not with `NO_COLOR`.
     pub fn new(format: MessageFormat) -> Self {
         let format = match format {
-            MessageFormat::Human => Format::Human,
-            MessageFormat::Short => Format::Short,
-            MessageFormat::Json => Format::Json,
+            MessageFormat::Human => DiagnosticFormat::Human,
+            MessageFormat::Short => DiagnosticFormat::Short,
+            MessageFormat::Json => DiagnosticFormat::Json,
         };
         let terminal = std::io::stderr().is_terminal();
         let plain = std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
         let width = terminal_size::terminal_size_of(std::io::stderr()).map_or(100, |(w, _)| usize::from(w.0));
-        Messages { sources: Sources::default(), format, colour: terminal && !plain, width, silent: false }
+        MessageReporter { sources: Sources::default(), format, colour: terminal && !plain, width, silent: false }
     }
 
     /// Says nothing: for a stage that is run a second time.
     pub fn silent() -> Self {
-        Messages { silent: true, ..Messages::new(MessageFormat::Human) }
+        MessageReporter { silent: true, ..MessageReporter::new(MessageFormat::Human) }
     }
 
     /// Does something of which only what stops it is said: a stage that is run a second time.
     ///
     /// # Errors
     /// Those of `act`, whose texts are then known here.
-    pub fn quietly<T>(&mut self, act: impl FnOnce(&mut Messages) -> Result<T, Failure>) -> Result<T, Failure> {
-        let mut silent = Messages::silent();
+    pub fn quietly<T>(
+        &mut self,
+        act: impl FnOnce(&mut MessageReporter) -> Result<T, CommandFailure>,
+    ) -> Result<T, CommandFailure> {
+        let mut silent = MessageReporter::silent();
         let result = act(&mut silent);
         if result.is_err() {
             self.sources = silent.sources;
@@ -72,20 +75,20 @@ impl Messages {
     ///
     /// # Errors
     /// Its diagnostics, when there are errors among them or no value.
-    pub fn value<T>(&self, checked: Checked<T>) -> Result<T, Failure> {
+    pub fn value<T>(&self, checked: StageResult<T>) -> Result<T, CommandFailure> {
         let failed = checked.diagnostics.iter().any(Diagnostic::is_error);
         match checked.value {
             Some(value) if !failed => {
                 self.say(&checked.diagnostics);
                 Ok(value)
             }
-            _ => Err(Failure { diagnostics: checked.diagnostics }),
+            _ => Err(CommandFailure { diagnostics: checked.diagnostics }),
         }
     }
 
     /// A remark for people; scripts that asked for JSON or short messages are not bothered.
     pub fn remark(&self, text: &str) {
-        if self.format == Format::Human {
+        if self.format == DiagnosticFormat::Human {
             self.write(&format!("{text}\n"));
         }
     }

@@ -45,7 +45,7 @@ use clap::{Parser, Subcommand};
 
 use bramah_model::instance::GIVEN;
 use bramah_syntax::diag::{Code, Diagnostic, Sources};
-use messages::{MessageFormat, Messages};
+use messages::{MessageFormat, MessageReporter};
 
 /// Acausal simulator for electro-hydraulic machines: circuits in a strict subset of Modelica, solved by SUNDIALS IDA.
 #[derive(Parser, Debug)]
@@ -55,7 +55,7 @@ struct Cli {
     #[arg(long, global = true, value_enum, default_value_t, value_name = "FORMAT")]
     message_format: MessageFormat,
     #[command(subcommand)]
-    command: Command,
+    command: CliCommand,
 }
 
 const EXAMPLES: &str = "\
@@ -71,7 +71,7 @@ Exit status: 0 fine; 1 the model is wrong, the run did not reach its end, or a c
 2 bad arguments or files; 101 a bug of bramah.";
 
 #[derive(Subcommand, Debug)]
-enum Command {
+enum CliCommand {
     New(new::NewArgs),
     Check(check::CheckArgs),
     Simulate(simulate::SimulateArgs),
@@ -94,7 +94,7 @@ enum Command {
 
 /// How a command ended when nothing went wrong with the command itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ending {
+enum CommandStatus {
     /// All is well.
     Fine,
     /// The model is wrong, the run stopped early, or a comparison found a violation.
@@ -103,11 +103,11 @@ enum Ending {
 
 /// Why a command could not do its work.
 #[derive(Debug)]
-struct Failure {
+struct CommandFailure {
     diagnostics: Vec<Diagnostic>,
 }
 
-impl Failure {
+impl CommandFailure {
     /// One diagnostic without place.
     fn new(code: Code, message: impl Into<String>) -> Self {
         Diagnostic::new(code, message).into()
@@ -121,9 +121,9 @@ impl Failure {
     }
 }
 
-impl From<Diagnostic> for Failure {
+impl From<Diagnostic> for CommandFailure {
     fn from(diagnostic: Diagnostic) -> Self {
-        Failure { diagnostics: vec![diagnostic] }
+        CommandFailure { diagnostics: vec![diagnostic] }
     }
 }
 
@@ -144,10 +144,10 @@ pub fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    let mut messages = Messages::new(cli.message_format);
+    let mut messages = MessageReporter::new(cli.message_format);
     match dispatch(cli.command, &mut messages) {
-        Ok(Ending::Fine) => ExitCode::SUCCESS,
-        Ok(Ending::Wrong) => ExitCode::from(1),
+        Ok(CommandStatus::Fine) => ExitCode::SUCCESS,
+        Ok(CommandStatus::Wrong) => ExitCode::from(1),
         Err(failure) => {
             messages.say(&failure.diagnostics);
             ExitCode::from(failure.exit_code(&messages.sources))
@@ -155,26 +155,26 @@ pub fn main() -> ExitCode {
     }
 }
 
-fn dispatch(command: Command, messages: &mut Messages) -> Result<Ending, Failure> {
+fn dispatch(command: CliCommand, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     match command {
-        Command::New(args) => new::run(&args, messages),
-        Command::Check(args) => check::run(&args, messages),
-        Command::Simulate(args) => simulate::run(&args, messages),
-        Command::Plot(args) => plot::run(&args, messages),
-        Command::Sweep(args) => sweep::run(&args, messages),
-        Command::Compare(args) => compare::run(&args, messages),
-        Command::Identify(args) => identify::run(&args, messages),
-        Command::Gap(args) => gap::run(&args, messages),
-        Command::Steady(args) => steady::run(&args, messages),
-        Command::Partition(args) => partition::run(&args, messages),
-        Command::Linearize(args) => linearize::run(&args, messages),
-        Command::Sensitivity(args) => sensitivity::run(&args, messages),
-        Command::Export(args) => export::run(&args, messages),
-        Command::Fmt(args) => fmt::run(&args, messages),
-        Command::Lsp(args) => lsp::run(&args),
-        Command::Serve(args) => serve::run(&args),
-        Command::Explain(args) => explain::run(&args),
-        Command::Completions(args) => completions::run(&args),
+        CliCommand::New(args) => new::run(&args, messages),
+        CliCommand::Check(args) => check::run(&args, messages),
+        CliCommand::Simulate(args) => simulate::run(&args, messages),
+        CliCommand::Plot(args) => plot::run(&args, messages),
+        CliCommand::Sweep(args) => sweep::run(&args, messages),
+        CliCommand::Compare(args) => compare::run(&args, messages),
+        CliCommand::Identify(args) => identify::run(&args, messages),
+        CliCommand::Gap(args) => gap::run(&args, messages),
+        CliCommand::Steady(args) => steady::run(&args, messages),
+        CliCommand::Partition(args) => partition::run(&args, messages),
+        CliCommand::Linearize(args) => linearize::run(&args, messages),
+        CliCommand::Sensitivity(args) => sensitivity::run(&args, messages),
+        CliCommand::Export(args) => export::run(&args, messages),
+        CliCommand::Fmt(args) => fmt::run(&args, messages),
+        CliCommand::Lsp(args) => lsp::run(&args),
+        CliCommand::Serve(args) => serve::run(&args),
+        CliCommand::Explain(args) => explain::run(&args),
+        CliCommand::Completions(args) => completions::run(&args),
     }
 }
 

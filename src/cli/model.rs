@@ -2,42 +2,51 @@
 
 use std::path::{Path, PathBuf};
 
-use super::Failure;
-use super::messages::Messages;
+use super::CommandFailure;
+use super::messages::MessageReporter;
 use super::request::library_folders;
-use bramah_analysis::experiment::Experiment;
+use bramah_analysis::experiment::ExperimentSpecification;
 use bramah_circuit::compiled::CompiledModel;
-use bramah_model::compile::{Flattened, Outcome, Request};
+use bramah_model::compile::{CompileOutcome, FrontEndResult, Request};
 use bramah_model::flat::FlatModel;
 use bramah_model::instance::Override;
-use bramah_model::network::Graph;
+use bramah_model::network::ComponentGraph;
 use bramah_model::structure::Dae;
-use bramah_solve::lower::Options;
+use bramah_solve::lower::LoweringOptions;
 use bramah_syntax::diag::{Diagnostic, Severity};
 use bramah_syntax::world::DiskWorld;
 
 /// Up to the flat model, which exists also where the equations do not fit together.
-pub(super) fn flatten(experiment: &Experiment, messages: &mut Messages) -> Result<Flattened, Failure> {
+pub(super) fn flatten(
+    experiment: &ExperimentSpecification,
+    messages: &mut MessageReporter,
+) -> Result<FrontEndResult, CommandFailure> {
     let outcome = bramah_model::compile::flatten(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Name, components and connections, also where ports are open.
-pub(super) fn graph(experiment: &Experiment, messages: &mut Messages) -> Result<(String, Graph), Failure> {
+pub(super) fn graph(
+    experiment: &ExperimentSpecification,
+    messages: &mut MessageReporter,
+) -> Result<(String, ComponentGraph), CommandFailure> {
     let outcome = bramah_model::compile::graph(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Up to the sorted equations, without running.
-pub(super) fn sort(experiment: &Experiment, messages: &mut Messages) -> Result<(FlatModel, Graph, Dae), Failure> {
+pub(super) fn sort(
+    experiment: &ExperimentSpecification,
+    messages: &mut MessageReporter,
+) -> Result<(FlatModel, ComponentGraph, Dae), CommandFailure> {
     let outcome = bramah_model::compile::sort(&DiskWorld, &request(experiment)?);
     pass(outcome, experiment, messages)
 }
 
 /// Names of all models of a source that can run.
-pub(super) fn runnable(experiment: &Experiment) -> Result<Vec<String>, Failure> {
+pub(super) fn runnable(experiment: &ExperimentSpecification) -> Result<Vec<String>, CommandFailure> {
     let found = bramah_model::compile::runnable(&DiskWorld, &request(experiment)?)
-        .map_err(|diagnostics| Failure { diagnostics })?;
+        .map_err(|diagnostics| CommandFailure { diagnostics })?;
     Ok(found.into_iter().map(|r| r.class).collect())
 }
 
@@ -48,12 +57,15 @@ pub(super) fn described(request: &Request, class: &str) -> String {
 }
 
 /// The whole way to a system that can run.
-pub(super) fn compile(experiment: &Experiment, messages: &mut Messages) -> Result<CompiledModel, Failure> {
-    let outcome = bramah_circuit::compiled::compile(&DiskWorld, &request(experiment)?, &Options::default());
+pub(super) fn compile(
+    experiment: &ExperimentSpecification,
+    messages: &mut MessageReporter,
+) -> Result<CompiledModel, CommandFailure> {
+    let outcome = bramah_circuit::compiled::compile(&DiskWorld, &request(experiment)?, &LoweringOptions::default());
     pass(outcome, experiment, messages)
 }
 
-pub(super) fn request(experiment: &Experiment) -> Result<Request, Failure> {
+pub(super) fn request(experiment: &ExperimentSpecification) -> Result<Request, CommandFailure> {
     Ok(Request {
         source: source(Path::new(experiment.file.as_deref().unwrap_or_default())),
         model: experiment.model.clone(),
@@ -78,13 +90,17 @@ pub(super) fn source(named: &Path) -> PathBuf {
     whole.unwrap_or_else(|| named.to_path_buf())
 }
 
-fn overrides(experiment: &Experiment) -> Vec<Override> {
+fn overrides(experiment: &ExperimentSpecification) -> Vec<Override> {
     let of = |(name, value): &(String, String)| Override { name: name.clone(), value: value.clone() };
     experiment.set.iter().map(of).collect()
 }
 
 /// Says remarks and warnings and hands out the value, or fails with everything that was said.
-fn pass<T>(outcome: Outcome<T>, experiment: &Experiment, messages: &mut Messages) -> Result<T, Failure> {
+fn pass<T>(
+    outcome: CompileOutcome<T>,
+    experiment: &ExperimentSpecification,
+    messages: &mut MessageReporter,
+) -> Result<T, CommandFailure> {
     messages.sources = outcome.sources;
     let mut diagnostics = outcome.diagnostics;
     if experiment.deny_warnings == Some(true) {
@@ -96,7 +112,7 @@ fn pass<T>(outcome: Outcome<T>, experiment: &Experiment, messages: &mut Messages
             messages.say(&diagnostics);
             Ok(value)
         }
-        _ => Err(Failure { diagnostics }),
+        _ => Err(CommandFailure { diagnostics }),
     }
 }
 

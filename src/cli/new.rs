@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::files::{access, write};
-use super::messages::Messages;
-use super::{Ending, Failure};
+use super::messages::MessageReporter;
+use super::{CommandFailure, CommandStatus};
 use bramah_syntax::diag::{Code, Diagnostic};
 
 const CIRCUIT: &str = include_str!("new/circuit.mo");
@@ -30,7 +30,7 @@ pub(super) struct NewArgs {
     study: bool,
 }
 
-pub(super) fn run(args: &NewArgs, messages: &Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &NewArgs, messages: &MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let class = class_name(&args.folder)?;
     let name = class.to_lowercase();
     let (model, table) = if args.study { (RIG, STUDY) } else { (CIRCUIT, EXPERIMENT) };
@@ -38,7 +38,7 @@ pub(super) fn run(args: &NewArgs, messages: &Messages) -> Result<Ending, Failure
     for (path, _) in &files {
         if path.exists() {
             let text = format!("`{}` is already there; nothing was written", path.display());
-            return Err(Failure::new(Code::FileAccess, text));
+            return Err(CommandFailure::new(Code::FileAccess, text));
         }
     }
     std::fs::create_dir_all(&args.folder).map_err(|e| access(&args.folder, "made", &e))?;
@@ -52,17 +52,17 @@ pub(super) fn run(args: &NewArgs, messages: &Messages) -> Result<Ending, Failure
             "next:\n  bramah gap {folder}/{name}.toml --list\n  put your recordings beside it, name their columns in \
              {folder}/{name}.toml, then\n  bramah gap {folder}/{name}.toml --report {folder}/gap.html"
         ));
-        return Ok(Ending::Fine);
+        return Ok(CommandStatus::Fine);
     }
     messages.remark(&format!(
         "next:\n  bramah check {folder}/{class}.mo\n  bramah simulate {folder}/{name}.toml\n  \
          bramah plot {folder}/{name}.csv -o {folder}/report.html"
     ));
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
 /// `my-press` becomes `MyPress`: the folder's name as the name of a class.
-fn class_name(folder: &Path) -> Result<String, Failure> {
+fn class_name(folder: &Path) -> Result<String, CommandFailure> {
     let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
     let last = absolute.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let words = last.split(|c: char| !c.is_ascii_alphanumeric()).filter(|w| !w.is_empty());

@@ -4,19 +4,19 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::axes::Entry;
+use super::axes::AxisOption;
 use super::linearize::state_at;
-use super::messages::Messages;
+use super::messages::MessageReporter;
 use super::recorder::{write_points, write_text};
 use super::request::ModelArgs;
-use super::{Ending, Failure, files, model, plot};
-use bramah_analysis::linear::{Choice, Chosen, outputs};
-use bramah_analysis::partition::{Zones, curve, zones};
-use bramah_analysis::steady::{Point, Unsteady};
+use super::{CommandFailure, CommandStatus, files, model, plot};
+use bramah_analysis::linear::{InputOutputSelection, LinearizationSetup, outputs};
+use bramah_analysis::partition::{FlowCharacteristic, curve, zones};
+use bramah_analysis::steady::{OperatingPoint, SteadyStateError};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
 use bramah_plot::Figure;
-use bramah_plot::figure::{Panel, Series};
+use bramah_plot::figure::{FigurePanel, PlotSeries};
 use bramah_results::{Signal, number};
 use bramah_solve::signals;
 use bramah_syntax::diag::Code;
@@ -55,31 +55,32 @@ pub(super) struct PartitionArgs {
 }
 
 /// A quantity and the values it takes.
-struct Axis {
+struct PartitionAxis {
     variable: VarId,
     signal: Signal,
     values: Vec<f64>,
 }
 
 /// Flow over speed at one load.
-struct Curve {
+struct FlowCurve {
     load: Option<f64>,
     points: Vec<(f64, f64)>,
 }
 
-pub(super) fn run(args: &PartitionArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &PartitionArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     args.output_file.as_deref().map_or(Ok(()), |path| files::ready_as(path, "a table", &["csv"]))?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let experiment = args.model.experiment(None, messages)?;
     let model = model::compile(&experiment, messages)?;
     let entries = [Some(("--speed", &args.speed)), args.load.as_ref().map(|load| ("--load", load))];
-    let entries = entries.into_iter().flatten().map(|(option, text)| Entry::parse(option, text));
-    let entries: Vec<Entry<'_>> = entries.collect::<Result<_, _>>()?;
+    let entries = entries.into_iter().flatten().map(|(option, text)| AxisOption::parse(option, text));
+    let entries: Vec<AxisOption<'_>> = entries.collect::<Result<_, _>>()?;
     let inputs = entries.iter().map(|entry| entry.name.to_owned()).collect();
-    let choice = Choice { inputs, outputs: vec![args.flow.clone()] };
-    let chosen = Chosen::new(&model.flat, &choice, &[]).map_err(|diagnostics| Failure { diagnostics })?;
+    let choice = InputOutputSelection { inputs, outputs: vec![args.flow.clone()] };
+    let chosen =
+        LinearizationSetup::new(&model.flat, &choice, &[]).map_err(|diagnostics| CommandFailure { diagnostics })?;
     let axes = entries.iter().zip(chosen.asked()).map(|(entry, variable)| axis(&model, entry, variable));
-    let mut axes: Vec<Axis> = axes.collect::<Result<_, _>>()?;
+    let mut axes: Vec<PartitionAxis> = axes.collect::<Result<_, _>>()?;
     axes[0].values.sort_by(f64::total_cmp);
     axes[0].values.dedup();
     let flow = outputs(&model.flat, &choice.outputs)?;
@@ -96,20 +97,24 @@ pub(super) fn run(args: &PartitionArgs, messages: &mut Messages) -> Result<Endin
     say(&model, &axes, &flow, &curves)
 }
 
-fn axis(model: &CompiledModel, entry: &Entry<'_>, variable: VarId) -> Result<Axis, Failure> {
+fn axis(model: &CompiledModel, entry: &AxisOption<'_>, variable: VarId) -> Result<PartitionAxis, CommandFailure> {
     let signal = signals(&model.dae, &[variable]).remove(0);
-    Ok(Axis { variable, values: entry.values(&signal.unit)?, signal })
+    Ok(PartitionAxis { variable, values: entry.values(&signal.unit)?, signal })
 }
 
 /// The curve at each load, from the point at the slowest speed of the one before.
-fn curves(model: &CompiledModel, chosen: &Chosen, axes: &[Axis]) -> Result<Vec<Curve>, Failure> {
+fn curves(
+    model: &CompiledModel,
+    chosen: &LinearizationSetup,
+    axes: &[PartitionAxis],
+) -> Result<Vec<FlowCurve>, CommandFailure> {
     let loads: Vec<Option<f64>> = match axes.get(1) {
         Some(load) => load.values.iter().copied().map(Some).collect(),
         None => vec![None],
     };
     let given = state_at(model, None)?.0;
-    let mut local = chosen.at(&given).map_err(|why| Unsteady::from(why).said(chosen))?;
-    let mut from = Point { x: local.state(), given };
+    let mut local = chosen.at(&given).map_err(|why| SteadyStateError::from(why).said(chosen))?;
+    let mut from = OperatingPoint { x: local.state(), given };
     let mut found = Vec::with_capacity(loads.len());
     for load in loads {
         let speeds = (axes[0].variable, &axes[0].values[..]);
@@ -118,13 +123,13 @@ fn curves(model: &CompiledModel, chosen: &Chosen, axes: &[Axis]) -> Result<Vec<C
         let (first, points) =
             curve.map_err(|missed| located(missed.why.said(chosen).into(), axes, missed.speed, load))?;
         from = first;
-        found.push(Curve { load, points });
+        found.push(FlowCurve { load, points });
     }
     Ok(found)
 }
 
 /// Says at which point a search failed.
-fn located(mut failure: Failure, axes: &[Axis], speed: f64, load: Option<f64>) -> Failure {
+fn located(mut failure: CommandFailure, axes: &[PartitionAxis], speed: f64, load: Option<f64>) -> CommandFailure {
     let places = axes.iter().zip([Some(speed), load]).filter_map(|(axis, value)| Some((axis, value?)));
     let place: Vec<String> = places.map(|(axis, value)| with_unit(&axis.signal, value)).collect();
     if let Some(d) = failure.diagnostics.first_mut() {
@@ -138,7 +143,12 @@ fn with_unit(signal: &Signal, value: f64) -> String {
 }
 
 /// Tells the zones; a load without one is an end of its own.
-fn say(model: &CompiledModel, axes: &[Axis], flow: &Signal, curves: &[Curve]) -> Result<Ending, Failure> {
+fn say(
+    model: &CompiledModel,
+    axes: &[PartitionAxis],
+    flow: &Signal,
+    curves: &[FlowCurve],
+) -> Result<CommandStatus, CommandFailure> {
     let speed = &axes[0].signal;
     let mut out = format!("{}: zones of {} over {}\n", model.dae.class, flow.name, speed.name);
     let mut none = true;
@@ -153,7 +163,7 @@ fn say(model: &CompiledModel, axes: &[Axis], flow: &Signal, curves: &[Curve]) ->
         }
     }
     if none {
-        return Err(Failure::new(
+        return Err(CommandFailure::new(
             Code::BadArgument,
             format!(
                 "`{}` rises with `{}` nowhere over three speeds and more: there is no load zone",
@@ -162,10 +172,10 @@ fn say(model: &CompiledModel, axes: &[Axis], flow: &Signal, curves: &[Curve]) ->
         ));
     }
     write_text("-", &out)?;
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
-fn words(zones: &Zones, speed: &Signal, flow: &Signal) -> String {
+fn words(zones: &FlowCharacteristic, speed: &Signal, flow: &Signal) -> String {
     let n = |value: f64| number::rounded(value, 5);
     let saturation = match zones.saturation {
         Some(at) => format!("saturation zone from {} {}", n(at), speed.unit),
@@ -182,16 +192,20 @@ fn words(zones: &Zones, speed: &Signal, flow: &Signal) -> String {
         .to_owned()
 }
 
-fn picture(model: &CompiledModel, axes: &[Axis], flow: &Signal, curves: &[Curve]) -> Figure {
+fn picture(model: &CompiledModel, axes: &[PartitionAxis], flow: &Signal, curves: &[FlowCurve]) -> Figure {
     let label = |s: &Signal| if s.unit.is_empty() { s.name.clone() } else { format!("{} in {}", s.name, s.unit) };
-    let series = curves.iter().enumerate().map(|(colour, curve)| Series {
+    let series = curves.iter().enumerate().map(|(colour, curve)| PlotSeries {
         colour,
         name: axes.get(1).zip(curve.load).map_or_else(|| flow.name.clone(), |(a, load)| with_unit(&a.signal, load)),
         x: curve.points.iter().map(|p| p.0).collect(),
         y: curve.points.iter().map(|p| p.1).collect(),
-        ..Series::default()
+        ..PlotSeries::default()
     });
-    let panel =
-        Panel { x_label: label(&axes[0].signal), y_label: label(flow), series: series.collect(), ..Panel::default() };
+    let panel = FigurePanel {
+        x_label: label(&axes[0].signal),
+        y_label: label(flow),
+        series: series.collect(),
+        ..FigurePanel::default()
+    };
     Figure { title: format!("{}: flow over speed", model.dae.class), panels: vec![panel], shared_x: false }
 }

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::messages::Messages;
-use super::{Ending, Failure, data, files};
+use super::messages::MessageReporter;
+use super::{CommandFailure, CommandStatus, data, files};
 use bramah_plot::map::{self, map};
-use bramah_plot::select::{Choice, Run, UnitSystem, figure};
+use bramah_plot::select::{FigureOptions, LabelledTrajectory, UnitSystem, figure};
 use bramah_plot::{Figure, html, png, svg};
-use bramah_results::{Globs, Trajectory};
+use bramah_results::{GlobPatterns, Trajectory};
 use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Draw results: SVG, PNG, or a page with zoom and hover
@@ -64,7 +64,7 @@ fn unit_system(text: &str) -> Result<UnitSystem, String> {
     }
 }
 
-pub(super) fn run(args: &PlotArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &PlotArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let mut trajectories = Vec::new();
     for path in &args.results {
         let mut trajectory = data::result(path, args.time_column.as_deref(), messages)?;
@@ -73,20 +73,20 @@ pub(super) fn run(args: &PlotArgs, messages: &mut Messages) -> Result<Ending, Fa
         trajectories.push(trajectory);
     }
     let labels: Vec<String> = args.results.iter().map(|p| stem(p)).collect();
-    let choice = Choice {
-        variables: Globs::new(&args.variables),
-        panels: args.panel.iter().map(|list| Globs::new(&[list])).collect(),
+    let choice = FigureOptions {
+        variables: GlobPatterns::new(&args.variables),
+        panels: args.panel.iter().map(|list| GlobPatterns::new(&[list])).collect(),
         x: args.x.clone(),
         title: args.title.clone(),
     };
-    let runs: Vec<Run<'_>> =
-        labels.iter().zip(&trajectories).map(|(label, trajectory)| Run { label, trajectory }).collect();
+    let runs: Vec<LabelledTrajectory<'_>> =
+        labels.iter().zip(&trajectories).map(|(label, trajectory)| LabelledTrajectory { label, trajectory }).collect();
     let output = args.output.clone().unwrap_or_else(|| args.results[0].with_extension("svg"));
     if let (Some(x), Some(y)) = (&args.x, &args.y) {
-        let drawn = map(&runs, &Globs::new(&args.variables), x, y, &args.title);
+        let drawn = map(&runs, &GlobPatterns::new(&args.variables), x, y, &args.title);
         let drawn = drawn.map_err(|e| not_found(&e, args, &trajectories))?;
         write_map(&map::write(&drawn), &output, messages)?;
-        return Ok(Ending::Fine);
+        return Ok(CommandStatus::Fine);
     }
     let selected = figure(&runs, &choice).map_err(|e| not_found(&e, args, &trajectories))?;
     if selected.left_out > 0 {
@@ -94,7 +94,7 @@ pub(super) fn run(args: &PlotArgs, messages: &mut Messages) -> Result<Ending, Fa
     }
     let facts = [("files".to_owned(), labels.join(", "))];
     write(&selected.figure, &facts, &output, messages)?;
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
 /// Writes a figure in the format that the file's name asks for.
@@ -102,55 +102,55 @@ pub(super) fn write(
     figure: &Figure,
     facts: &[(String, String)],
     path: &Path,
-    messages: &Messages,
-) -> Result<(), Failure> {
-    let bytes = match Format::of(path)? {
-        Format::Page => html::write(figure, facts).into_bytes(),
+    messages: &MessageReporter,
+) -> Result<(), CommandFailure> {
+    let bytes = match PictureFormat::of(path)? {
+        PictureFormat::Page => html::write(figure, facts).into_bytes(),
         format => drawn(svg::write(figure), format)?,
     };
     deliver(path, &bytes, messages)
 }
 
 /// Says before the work whether a picture of this name can be written.
-pub(super) fn ready(path: &Path) -> Result<(), Failure> {
-    Format::of(path).and_then(|_| files::ready(path))
+pub(super) fn ready(path: &Path) -> Result<(), CommandFailure> {
+    PictureFormat::of(path).and_then(|_| files::ready(path))
 }
 
 /// The formats of pictures.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Format {
+enum PictureFormat {
     Svg,
     Png,
     Page,
 }
 
-impl Format {
+impl PictureFormat {
     /// As the file's name asks for; SVG on stdout.
-    fn of(path: &Path) -> Result<Format, Failure> {
+    fn of(path: &Path) -> Result<PictureFormat, CommandFailure> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         match extension.as_str() {
-            _ if path == Path::new("-") => Ok(Format::Svg),
-            "svg" => Ok(Format::Svg),
-            "png" => Ok(Format::Png),
-            "html" | "htm" => Ok(Format::Page),
+            _ if path == Path::new("-") => Ok(PictureFormat::Svg),
+            "svg" => Ok(PictureFormat::Svg),
+            "png" => Ok(PictureFormat::Png),
+            "html" | "htm" => Ok(PictureFormat::Page),
             _ => {
                 let text = format!("a picture is written as .svg, .png or .html, not as `{}`", path.display());
-                Err(Failure::new(Code::BadArgument, text))
+                Err(CommandFailure::new(Code::BadArgument, text))
             }
         }
     }
 }
 
 /// A drawn picture as the bytes of an image.
-fn drawn(picture: String, format: Format) -> Result<Vec<u8>, Failure> {
+fn drawn(picture: String, format: PictureFormat) -> Result<Vec<u8>, CommandFailure> {
     match format {
-        Format::Png => png::write(&picture).map_err(|e| Failure::new(Code::BadArgument, e)),
-        Format::Svg | Format::Page => Ok(picture.into_bytes()),
+        PictureFormat::Png => png::write(&picture).map_err(|e| CommandFailure::new(Code::BadArgument, e)),
+        PictureFormat::Svg | PictureFormat::Page => Ok(picture.into_bytes()),
     }
 }
 
 /// Writes a file, or prints where the name is `-`.
-fn deliver(path: &Path, bytes: &[u8], messages: &Messages) -> Result<(), Failure> {
+fn deliver(path: &Path, bytes: &[u8], messages: &MessageReporter) -> Result<(), CommandFailure> {
     if path == Path::new("-") {
         return files::print(&String::from_utf8_lossy(bytes));
     }
@@ -160,18 +160,23 @@ fn deliver(path: &Path, bytes: &[u8], messages: &Messages) -> Result<(), Failure
 }
 
 /// Writes a picture that is drawn already; a page shows the curves of `figure` below it.
-pub(super) fn write_picture(picture: &str, figure: &Figure, path: &Path, messages: &Messages) -> Result<(), Failure> {
-    let bytes = match Format::of(path)? {
-        Format::Page => html::write_around(figure, &[], picture).into_bytes(),
+pub(super) fn write_picture(
+    picture: &str,
+    figure: &Figure,
+    path: &Path,
+    messages: &MessageReporter,
+) -> Result<(), CommandFailure> {
+    let bytes = match PictureFormat::of(path)? {
+        PictureFormat::Page => html::write_around(figure, &[], picture).into_bytes(),
         format => drawn(picture.to_owned(), format)?,
     };
     deliver(path, &bytes, messages)
 }
 
 /// Writes a map, which has no page with zoom and hover.
-fn write_map(picture: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
-    if Format::of(path)? == Format::Page {
-        return Err(Failure::new(Code::BadArgument, "a map is written as .svg or .png"));
+fn write_map(picture: &str, path: &Path, messages: &MessageReporter) -> Result<(), CommandFailure> {
+    if PictureFormat::of(path)? == PictureFormat::Page {
+        return Err(CommandFailure::new(Code::BadArgument, "a map is written as .svg or .png"));
     }
     write_picture(picture, &Figure::default(), path, messages)
 }
@@ -181,10 +186,10 @@ pub(super) fn stem(path: &Path) -> String {
     path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-fn not_found(why: &str, args: &PlotArgs, trajectories: &[Trajectory]) -> Failure {
+fn not_found(why: &str, args: &PlotArgs, trajectories: &[Trajectory]) -> CommandFailure {
     let names = || trajectories.iter().flat_map(|t| t.signals.iter().map(|s| s.name.as_str()));
     let mut diagnostic = Diagnostic::new(Code::BadArgument, why);
-    let asked = Globs::new(&[args.variables.as_slice(), args.panel.as_slice()].concat());
+    let asked = GlobPatterns::new(&[args.variables.as_slice(), args.panel.as_slice()].concat());
     let wanted = args.x.as_deref().into_iter().chain(args.y.as_deref()).chain(asked.unused(names()));
     for name in wanted.filter(|n| !names().any(|k| k == *n)) {
         if let Some(near) = bramah_syntax::diag::nearest(name, names()) {

@@ -12,14 +12,14 @@ const PARTS: u64 = 10_000;
 
 /// A line with simulated time, events and the expected rest.
 #[derive(Debug)]
-pub(super) struct Bar {
+pub(super) struct SimulationBar {
     bar: Option<ProgressBar>,
     start: f64,
     length: f64,
     begun: Instant,
 }
 
-impl Bar {
+impl SimulationBar {
     /// For a run from `start` to `stop`; nothing is shown where stderr is no terminal.
     pub fn new(start: f64, stop: f64) -> Self {
         let bar = std::io::stderr()
@@ -29,7 +29,7 @@ impl Bar {
             let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  rest {eta}");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
         }
-        Bar { bar, start, length: (stop - start).max(f64::MIN_POSITIVE), begun: Instant::now() }
+        SimulationBar { bar, start, length: (stop - start).max(f64::MIN_POSITIVE), begun: Instant::now() }
     }
 
     /// Notes how far the run is.

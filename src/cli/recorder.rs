@@ -4,8 +4,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use super::Failure;
-use super::checkpoint::Written;
+use super::CommandFailure;
+use super::checkpoint::ResultPosition;
 use super::files::{NewFile, access, ending, print};
 use bramah_results::parquet::ParquetWriter;
 use bramah_results::{CsvUnits, CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
@@ -18,7 +18,7 @@ const LARGE: u64 = 1_000_000_000;
 
 /// Where a result goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Target {
+pub(super) enum ResultTarget {
     /// A CSV file.
     Csv(PathBuf),
     /// CSV on stdout.
@@ -29,12 +29,12 @@ pub(super) enum Target {
     Parquet(PathBuf),
 }
 
-impl Target {
+impl ResultTarget {
     /// The format follows from the file's name.
-    pub fn new(name: &str) -> Result<Target, Failure> {
+    pub fn new(name: &str) -> Result<ResultTarget, CommandFailure> {
         let path = PathBuf::from(name);
         if name == "-" {
-            return Ok(Target::Stdout);
+            return Ok(ResultTarget::Stdout);
         }
         if path.extension().is_some_and(|e| ["html", "svg", "png"].iter().any(|p| e.eq_ignore_ascii_case(p))) {
             return Err(Diagnostic::new(Code::BadArgument, format!("`{name}` is no result file"))
@@ -42,29 +42,31 @@ impl Target {
                 .into());
         }
         match ending(&path, "a result", &["csv", "mat", "parquet"])? {
-            "mat" => Ok(Target::Mat(path)),
-            "parquet" => Ok(Target::Parquet(path)),
-            _ => Ok(Target::Csv(path)),
+            "mat" => Ok(ResultTarget::Mat(path)),
+            "parquet" => Ok(ResultTarget::Parquet(path)),
+            _ => Ok(ResultTarget::Csv(path)),
         }
     }
 
     /// Whether a name asks for Parquet.
     pub fn is_parquet(path: &Path) -> bool {
-        matches!(path.to_str().map(Target::new), Some(Ok(Target::Parquet(_))))
+        matches!(path.to_str().map(ResultTarget::new), Some(Ok(ResultTarget::Parquet(_))))
     }
 
     /// The name for messages.
     pub fn name(&self) -> String {
         match self {
-            Target::Csv(path) | Target::Mat(path) | Target::Parquet(path) => path.display().to_string(),
-            Target::Stdout => "stdout".to_owned(),
+            ResultTarget::Csv(path) | ResultTarget::Mat(path) | ResultTarget::Parquet(path) => {
+                path.display().to_string()
+            }
+            ResultTarget::Stdout => "stdout".to_owned(),
         }
     }
 }
 
 /// Takes the rows of a run.
-pub(super) struct Recorder {
-    target: Target,
+pub(super) struct ResultRecorder {
+    target: ResultTarget,
     csv: Option<CsvWriter<Box<dyn Write + Send>>>,
     parquet: Option<ParquetWriter<Box<dyn Write + Send>>>,
     file: Option<NewFile>,
@@ -74,31 +76,38 @@ pub(super) struct Recorder {
     /// All rows, where they are wanted after the run.
     rows: Trajectory,
     keep: bool,
-    failure: Option<Failure>,
+    failure: Option<CommandFailure>,
     count: usize,
     unread: bool,
     writing: Duration,
 }
 
-impl Recorder {
+impl ResultRecorder {
     /// Opens the file at once, so that a run is not lost to a wrong name. `keep`: all rows are wanted after the run.
-    pub fn new(target: Target, signals: Vec<Signal>, units: CsvUnits, keep: bool) -> Result<Self, Failure> {
-        let keep = keep || matches!(target, Target::Mat(_));
+    pub fn new(
+        target: ResultTarget,
+        signals: Vec<Signal>,
+        units: CsvUnits,
+        keep: bool,
+    ) -> Result<Self, CommandFailure> {
+        let keep = keep || matches!(target, ResultTarget::Mat(_));
         let file = match &target {
-            Target::Csv(path) | Target::Mat(path) | Target::Parquet(path) => Some(NewFile::create(path)?),
-            Target::Stdout => None,
+            ResultTarget::Csv(path) | ResultTarget::Mat(path) | ResultTarget::Parquet(path) => {
+                Some(NewFile::create(path)?)
+            }
+            ResultTarget::Stdout => None,
         };
         Ok(Self::on(target, file, (signals, units), keep, None))
     }
 
     /// Rows into a CSV file that survives a run that is killed; behind those of a checkpoint, if there is one.
     pub fn lasting(
-        target: Target,
+        target: ResultTarget,
         signals: Vec<Signal>,
         units: CsvUnits,
-        written: Option<&Written>,
-    ) -> Result<Self, Failure> {
-        let Target::Csv(path) = &target else {
+        written: Option<&ResultPosition>,
+    ) -> Result<Self, CommandFailure> {
+        let ResultTarget::Csv(path) = &target else {
             let text = format!("a run with checkpoints writes a CSV file, and the result is `{}`", target.name());
             return Err(Diagnostic::new(Code::BadArgument, text)
                 .help("name one with `-o`; `bramah plot` draws it afterwards")
@@ -109,13 +118,13 @@ impl Recorder {
     }
 
     fn on(
-        target: Target,
+        target: ResultTarget,
         file: Option<NewFile>,
         (signals, units): (Vec<Signal>, CsvUnits),
         keep: bool,
-        written: Option<&Written>,
-    ) -> Recorder {
-        let mut recorder = Recorder {
+        written: Option<&ResultPosition>,
+    ) -> ResultRecorder {
+        let mut recorder = ResultRecorder {
             target,
             csv: None,
             parquet: None,
@@ -134,14 +143,14 @@ impl Recorder {
 
     fn open(&mut self, units: CsvUnits, written: Option<u64>) {
         let out: Box<dyn Write + Send> = match (&self.target, &self.file) {
-            (Target::Csv(_) | Target::Parquet(_), Some(file)) => match file.handle() {
+            (ResultTarget::Csv(_) | ResultTarget::Parquet(_), Some(file)) => match file.handle() {
                 Ok(handle) => Box::new(handle),
                 Err(error) => return self.fail(&error),
             },
-            (Target::Stdout, _) => Box::new(std::io::BufWriter::new(std::io::stdout())),
+            (ResultTarget::Stdout, _) => Box::new(std::io::BufWriter::new(std::io::stdout())),
             _ => return,
         };
-        if matches!(self.target, Target::Parquet(_)) {
+        if matches!(self.target, ResultTarget::Parquet(_)) {
             match ParquetWriter::new(
                 Box::new(std::io::BufWriter::new(out)) as Box<dyn Write + Send>,
                 &self.rows.signals,
@@ -216,7 +225,7 @@ impl Recorder {
     }
 
     /// Puts all rows on the disk and says how far they reach; `None` after a failure.
-    pub fn mark(&mut self) -> Option<Written> {
+    pub fn mark(&mut self) -> Option<ResultPosition> {
         self.flush();
         let bytes = match self.csv.as_mut().map(CsvWriter::flush) {
             Some(Ok(bytes)) => bytes,
@@ -230,16 +239,16 @@ impl Recorder {
             self.failure = Some(failure);
             return None;
         }
-        Some(Written { file: self.target.name(), bytes, rows: self.count })
+        Some(ResultPosition { file: self.target.name(), bytes, rows: self.count })
     }
 
     /// Notes why no checkpoint could be written.
-    pub fn failed(&mut self, failure: Failure) {
+    pub fn failed(&mut self, failure: CommandFailure) {
         self.failure = Some(failure);
     }
 
     /// Ends without giving the file its name: what it holds up to the last mark is for another run.
-    pub fn suspend(mut self) -> Result<(), Failure> {
+    pub fn suspend(mut self) -> Result<(), CommandFailure> {
         self.failure.take().map_or(Ok(()), Err)
     }
 
@@ -249,7 +258,7 @@ impl Recorder {
     }
 
     /// Writes the rest and gives the file its name; hands out the rows where they were to be kept.
-    pub fn finish(mut self) -> Result<Trajectory, Failure> {
+    pub fn finish(mut self) -> Result<Trajectory, CommandFailure> {
         self.flush();
         if let Some(csv) = self.csv.take()
             && let Err(error) = csv.finish()
@@ -261,7 +270,7 @@ impl Recorder {
         {
             self.fail(&error);
         }
-        if let (Target::Mat(path), Some(file)) = (&self.target, &mut self.file) {
+        if let (ResultTarget::Mat(path), Some(file)) = (&self.target, &mut self.file) {
             mat::write(file, &self.rows).map_err(|e| access(path, "written", &e))?;
         }
         match (self.failure.take(), self.file.take()) {
@@ -274,7 +283,7 @@ impl Recorder {
 }
 
 /// The part of a result that could be written is kept under another name.
-fn kept(mut failure: Failure, file: Option<NewFile>) -> Failure {
+fn kept(mut failure: CommandFailure, file: Option<NewFile>) -> CommandFailure {
     if let (Some(path), Some(first)) = (file.and_then(NewFile::keep_part), failure.diagnostics.first_mut()) {
         first.notes.push(format!("what could be written is in `{}`", path.display()));
     }
@@ -282,9 +291,9 @@ fn kept(mut failure: Failure, file: Option<NewFile>) -> Failure {
 }
 
 /// A note about a result that will be large.
-pub(super) fn announcement(signals: &[Signal], intervals: f64, target: &Target) -> Option<Diagnostic> {
+pub(super) fn announcement(signals: &[Signal], intervals: f64, target: &ResultTarget) -> Option<Diagnostic> {
     let row = match target {
-        Target::Mat(_) | Target::Parquet(_) => 8 * (signals.len() as u64 + 1),
+        ResultTarget::Mat(_) | ResultTarget::Parquet(_) => 8 * (signals.len() as u64 + 1),
         _ => csv_bytes_per_row(signals),
     };
     let bytes = row as f64 * (intervals + 1.0);
@@ -297,7 +306,7 @@ pub(super) fn announcement(signals: &[Signal], intervals: f64, target: &Target) 
 }
 
 /// Writes a text to a file, or to stdout for `-`.
-pub(super) fn write_text(name: &str, text: &str) -> Result<(), Failure> {
+pub(super) fn write_text(name: &str, text: &str) -> Result<(), CommandFailure> {
     if name == "-" { print(text) } else { super::files::write(Path::new(name), text.as_bytes()) }
 }
 
@@ -306,7 +315,7 @@ pub(super) fn write_points(
     path: &Path,
     signals: &[Signal],
     rows: impl Iterator<Item = Vec<f64>>,
-) -> Result<(), Failure> {
+) -> Result<(), CommandFailure> {
     let mut out = Vec::new();
     let io = |e: std::io::Error| access(path, "written", &e);
     let mut writer = CsvWriter::new(&mut out, signals).map_err(io)?;
@@ -326,8 +335,8 @@ mod tests {
     fn rows_reach_the_file_when_all_is_done() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.csv");
-        let target = Target::new(path.to_str().unwrap()).unwrap();
-        let mut recorder = Recorder::new(target, vec![Signal::new("x")], CsvUnits::None, false).unwrap();
+        let target = ResultTarget::new(path.to_str().unwrap()).unwrap();
+        let mut recorder = ResultRecorder::new(target, vec![Signal::new("x")], CsvUnits::None, false).unwrap();
         assert!(recorder.row(0.0, &[1.0]));
         recorder.flush();
         assert!(recorder.row(0.5, &[2.0]));
@@ -341,7 +350,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.mat");
         let mut recorder =
-            Recorder::new(Target::Mat(path.clone()), vec![Signal::new("x")], CsvUnits::None, false).unwrap();
+            ResultRecorder::new(ResultTarget::Mat(path.clone()), vec![Signal::new("x")], CsvUnits::None, false)
+                .unwrap();
         recorder.row(0.0, &[1.0]);
         recorder.row(1.0, &[2.0]);
         let rows = recorder.finish().unwrap();
@@ -352,7 +362,8 @@ mod tests {
     #[test]
     fn a_full_disk_is_told() {
         let mut recorder =
-            Recorder::new(Target::Csv("/dev/full".into()), vec![Signal::new("x")], CsvUnits::None, false).unwrap();
+            ResultRecorder::new(ResultTarget::Csv("/dev/full".into()), vec![Signal::new("x")], CsvUnits::None, false)
+                .unwrap();
         recorder.row(0.0, &[1.0]);
         let failure = recorder.finish().unwrap_err();
         assert!(failure.diagnostics[0].message.contains("the disk is full"), "{failure:?}");
@@ -361,7 +372,7 @@ mod tests {
     #[test]
     fn large_results_are_announced() {
         let signals = vec![Signal::new("x"); 1000];
-        let target = Target::Stdout;
+        let target = ResultTarget::Stdout;
         assert!(announcement(&signals, 500.0, &target).is_none());
         assert!(announcement(&signals, 1e5, &target).unwrap().message.contains("GB"));
     }

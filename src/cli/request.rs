@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::Failure;
+use super::CommandFailure;
 use super::files::access;
-use super::messages::Messages;
-use bramah_analysis::experiment::{self, Experiment, Hold, InputMap, duration, event_rows, seconds, tolerance};
+use super::messages::MessageReporter;
+use bramah_analysis::experiment::{
+    self, ExperimentSpecification, InputHold, InputMap, duration, event_rows, seconds, tolerance,
+};
 use bramah_model::resolve::ANNOTATIONS;
 use bramah_results::CsvUnits;
 use bramah_results::glob::split_list;
@@ -78,7 +80,7 @@ pub(super) struct RunArgs {
     map: Vec<String>,
     /// Between samples, where --map does not say: `held` (each step is an event) or `linear` [default: held]
     #[arg(long, value_name = "held|linear", value_parser = hold)]
-    interpolation: Option<Hold>,
+    interpolation: Option<InputHold>,
     /// Write what the run cost
     #[arg(long, value_name = "JSON")]
     statistics: Option<String>,
@@ -93,14 +95,18 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     }
 }
 
-fn hold(text: &str) -> Result<Hold, String> {
-    Hold::parse(text).ok_or_else(|| "`held` or `linear` is expected".to_owned())
+fn hold(text: &str) -> Result<InputHold, String> {
+    InputHold::parse(text).ok_or_else(|| "`held` or `linear` is expected".to_owned())
 }
 
 impl ModelArgs {
     /// What the flags say, over what the experiment file says where FILE is one.
-    pub fn experiment(&self, run: Option<&RunArgs>, messages: &mut Messages) -> Result<Experiment, Failure> {
-        let mut flags = run.map_or_else(|| Ok(Experiment::default()), RunArgs::experiment)?;
+    pub fn experiment(
+        &self,
+        run: Option<&RunArgs>,
+        messages: &mut MessageReporter,
+    ) -> Result<ExperimentSpecification, CommandFailure> {
+        let mut flags = run.map_or_else(|| Ok(ExperimentSpecification::default()), RunArgs::experiment)?;
         flags.model = self.model.clone();
         flags.set = self.set.clone();
         flags.library = self.library.clone();
@@ -120,10 +126,10 @@ impl ModelArgs {
 }
 
 impl RunArgs {
-    fn experiment(&self) -> Result<Experiment, Failure> {
+    fn experiment(&self) -> Result<ExperimentSpecification, CommandFailure> {
         let entries = self.map.iter().flat_map(|m| split_list(m));
         let map: Result<Vec<InputMap>, String> = entries.map(|e| InputMap::parse(&e)).collect();
-        Ok(Experiment {
+        Ok(ExperimentSpecification {
             start_time: self.start_time,
             stop_time: self.stop_time,
             output_interval: self.output_interval,
@@ -135,10 +141,10 @@ impl RunArgs {
             plot: self.plot.clone(),
             input: self.input.clone(),
             time_column: self.time_column.clone(),
-            map: map.map_err(|e| Failure::new(Code::BadMap, format!("`--map`: {e}")))?,
+            map: map.map_err(|e| CommandFailure::new(Code::BadMap, format!("`--map`: {e}")))?,
             interpolation: self.interpolation,
             statistics: self.statistics.clone(),
-            ..Experiment::default()
+            ..ExperimentSpecification::default()
         })
     }
 }
@@ -148,13 +154,14 @@ fn is_experiment(file: &str) -> bool {
 }
 
 /// Reads an experiment file; its paths become relative to the working directory.
-fn read_experiment(path: &Path, messages: &mut Messages) -> Result<Experiment, Failure> {
+fn read_experiment(path: &Path, messages: &mut MessageReporter) -> Result<ExperimentSpecification, CommandFailure> {
     let bytes = std::fs::read(path).map_err(|e| access(path, "read", &e))?;
-    let text = String::from_utf8(bytes)
-        .map_err(|_| Failure::new(Code::BadExperiment, format!("`{}` is not a text in UTF-8", path.display())))?;
+    let text = String::from_utf8(bytes).map_err(|_| {
+        CommandFailure::new(Code::BadExperiment, format!("`{}` is not a text in UTF-8", path.display()))
+    })?;
     let file = messages.sources.add(path.display().to_string(), text);
     let checked = experiment::parse(&messages.sources, file);
-    let mut experiment = checked.value.ok_or(Failure { diagnostics: checked.diagnostics })?;
+    let mut experiment = checked.value.ok_or(CommandFailure { diagnostics: checked.diagnostics })?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let beside = |file: &mut String| *file = relative(&folder, file);
     // A class that ships with bramah is named, not a path: only what exists as a file is moved.
@@ -175,7 +182,7 @@ fn relative(folder: &Path, file: &str) -> String {
 ///
 /// # Errors
 /// When a folder of `--library` does not exist.
-pub(super) fn library_folders(experiment: &Experiment) -> Result<Vec<PathBuf>, Failure> {
+pub(super) fn library_folders(experiment: &ExperimentSpecification) -> Result<Vec<PathBuf>, CommandFailure> {
     folders(&experiment.library)
 }
 
@@ -183,11 +190,14 @@ pub(super) fn library_folders(experiment: &Experiment) -> Result<Vec<PathBuf>, F
 ///
 /// # Errors
 /// When a folder of `--library` does not exist.
-pub(super) fn folders(library: &[String]) -> Result<Vec<PathBuf>, Failure> {
+pub(super) fn folders(library: &[String]) -> Result<Vec<PathBuf>, CommandFailure> {
     let mut folders: Vec<PathBuf> = Vec::new();
     for folder in library {
         if !Path::new(folder).is_dir() {
-            return Err(Failure::new(Code::FileAccess, format!("`--library {folder}`: there is no such folder")));
+            return Err(CommandFailure::new(
+                Code::FileAccess,
+                format!("`--library {folder}`: there is no such folder"),
+            ));
         }
         folders.push(PathBuf::from(folder));
     }

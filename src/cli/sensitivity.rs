@@ -4,17 +4,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::messages::Messages;
-use super::recorder::{Target, write_text};
+use super::messages::MessageReporter;
+use super::recorder::{ResultTarget, write_text};
 use super::request::ModelArgs;
-use super::{Ending, Failure, columns, files, interrupt, model, plot};
+use super::{CommandFailure, CommandStatus, columns, files, interrupt, model, plot};
 use bramah_analysis::experiment::seconds;
-use bramah_analysis::sensitivity::{Moved, Sensitivity, TOLERANCE, sensitivity};
+use bramah_analysis::sensitivity::{Sensitivity, SensitivityParameter, TOLERANCE, sensitivity};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
-use bramah_model::flat::{Type, Variability};
-use bramah_plot::{Figure, Panel, Series};
-use bramah_results::{CsvWriter, Globs, Signal, number};
+use bramah_model::flat::{ScalarType, Variability};
+use bramah_plot::{Figure, FigurePanel, PlotSeries};
+use bramah_results::{CsvWriter, GlobPatterns, Signal, number};
 use bramah_solve::Settings;
 use bramah_syntax::diag::{Code, Diagnostic};
 
@@ -54,7 +54,7 @@ pub(super) struct SensitivityArgs {
 const SHOWN: usize = 6;
 const RANKED: usize = 20;
 
-pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &SensitivityArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     args.output_file.as_deref().map_or(Ok(()), |path| files::ready_as(path, "a table", &["csv"]))?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let experiment = args.model.experiment(None, messages)?;
@@ -65,14 +65,14 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<End
     if let Some(stop) = args.stop_time {
         if stop <= settings.start_time {
             let text = format!("the stop time {stop} s does not lie behind the start time {} s", settings.start_time);
-            return Err(Failure::new(Code::BadArgument, text));
+            return Err(CommandFailure::new(Code::BadArgument, text));
         }
         settings.stop_time = stop;
         settings.interval = (stop - settings.start_time) / 500.0;
     }
     settings.tolerance = settings.tolerance.min(TOLERANCE);
     let found = sensitivity(&model, &settings, &moved, interrupt::flag())
-        .map_err(|why| Failure::new(Code::StepTooSmall, format!("a run failed: {why}")))?;
+        .map_err(|why| CommandFailure::new(Code::StepTooSmall, format!("a run failed: {why}")))?;
     let by_runs = differences(&found);
     if !by_runs.is_empty() {
         messages.remark(by_runs.trim_end());
@@ -84,34 +84,34 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut Messages) -> Result<End
     if let Some(path) = &args.plot {
         plot::write(&picture(&found, &model.dae.class), &[], path, messages)?;
     }
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
-fn variables(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<VarId>, Failure> {
+fn variables(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<VarId>, CommandFailure> {
     if !args.variables.is_empty() {
-        return columns::choose(&model.dae, &args.variables, &Target::Stdout);
+        return columns::choose(&model.dae, &args.variables, &ResultTarget::Stdout);
     }
     let all = || (0..).map(VarId).zip(&model.flat.variables);
-    let outputs: Vec<VarId> = all().filter(|(_, v)| v.output && v.ty == Type::Real).map(|(v, _)| v).collect();
+    let outputs: Vec<VarId> = all().filter(|(_, v)| v.output && v.ty == ScalarType::Real).map(|(v, _)| v).collect();
     let states = || model.dae.states.iter().copied().filter(|v| v.index() < model.flat.variables.len());
     Ok(if outputs.is_empty() { states().collect() } else { outputs })
 }
 
-fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<Moved>, Failure> {
+fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<SensitivityParameter>, CommandFailure> {
     let mut values = model.system.layout.values();
     model.system.evaluate_parameters(&mut values, &[]);
-    let globs = Globs::new(&args.parameters);
+    let globs = GlobPatterns::new(&args.parameters);
     let flat = &model.flat;
     let fits = |v: VarId| {
         let variable = &flat.variables[v.index()];
-        let real = variable.variability == Variability::Parameter && variable.ty == Type::Real;
+        let real = variable.variability == Variability::Parameter && variable.ty == ScalarType::Real;
         let named = if globs.is_empty() { !variable.hidden && flat.is_root(v) } else { globs.matches(&variable.name) };
         real && named
     };
     let all = (0..u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables")).map(VarId);
-    let moved: Vec<Moved> = all
+    let moved: Vec<SensitivityParameter> = all
         .filter(|v| fits(*v))
-        .map(|v| Moved::of(model, v, &values))
+        .map(|v| SensitivityParameter::of(model, v, &values))
         .filter(|m| m.size.is_finite() && m.size < 1e30)
         .collect();
     if moved.is_empty() {
@@ -160,7 +160,7 @@ fn differences(found: &Sensitivity) -> String {
     reasons.into_iter().map(line).collect()
 }
 
-fn csv(found: &Sensitivity) -> Result<String, Failure> {
+fn csv(found: &Sensitivity) -> Result<String, CommandFailure> {
     let mut out = Vec::new();
     let pairs: Vec<(usize, usize)> =
         (0..found.parameters.len()).flat_map(|p| (0..found.plain.signals.len()).map(move |v| (p, v))).collect();
@@ -169,7 +169,7 @@ fn csv(found: &Sensitivity) -> Result<String, Failure> {
         Signal::new(format!("d {variable} / d ln {parameter}{}", mark(found, p)))
     };
     let signals: Vec<Signal> = pairs.iter().map(name).collect();
-    let io = |e: std::io::Error| Failure::new(Code::FileAccess, e.to_string());
+    let io = |e: std::io::Error| CommandFailure::new(Code::FileAccess, e.to_string());
     let mut writer = CsvWriter::new(&mut out, &signals).map_err(io)?;
     for (row, &time) in found.plain.times.iter().enumerate() {
         writer.row(time, pairs.iter().map(|&(p, v)| found.columns[p][v][row])).map_err(io)?;
@@ -183,20 +183,20 @@ fn picture(found: &Sensitivity, class: &str) -> Figure {
     let panels = (0..found.plain.signals.len()).map(|v| {
         let mut order: Vec<usize> = (0..found.parameters.len()).collect();
         order.sort_by(|&a, &b| found.weight(b, v).total_cmp(&found.weight(a, v)));
-        let curves = order.iter().take(SHOWN).enumerate().map(|(colour, &p)| Series {
+        let curves = order.iter().take(SHOWN).enumerate().map(|(colour, &p)| PlotSeries {
             name: format!("{}{}", found.parameters[p].0, mark(found, p)),
             x: found.plain.times.clone(),
             y: found.columns[p][v].clone(),
             colour,
-            ..Series::default()
+            ..PlotSeries::default()
         });
         let signal = &found.plain.signals[v];
         let unit = if signal.unit.is_empty() { String::new() } else { format!(" in {}", signal.unit) };
-        Panel {
+        FigurePanel {
             x_label: "time in s".to_owned(),
             y_label: format!("{}{unit}", signal.name),
             series: curves.collect(),
-            ..Panel::default()
+            ..FigurePanel::default()
         }
     });
     Figure {

@@ -7,21 +7,21 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
-use super::checkpoint::{Keeper, Marks, usual_distance};
-use super::inputs::{Recorded, check_cover, prepare};
-use super::messages::Messages;
-use super::progress::Bar;
-use super::recorder::{Recorder, Target, announcement, write_text};
+use super::checkpoint::{CheckpointFile, RunFingerprint, usual_distance};
+use super::inputs::{InputRecording, check_cover, prepare};
+use super::messages::MessageReporter;
+use super::progress::SimulationBar;
+use super::recorder::{ResultRecorder, ResultTarget, announcement, write_text};
 use super::request::{ModelArgs, RunArgs};
-use super::statistics::{Record, peak_memory};
-use super::{Ending, Failure, columns, interrupt, model, plot};
-use bramah_analysis::experiment::{Experiment, duration};
+use super::statistics::{StatisticsRecord, peak_memory};
+use super::{CommandFailure, CommandStatus, columns, interrupt, model, plot};
+use bramah_analysis::experiment::{ExperimentSpecification, duration};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_model::flat;
 use bramah_model::structure::StateChoice;
-use bramah_plot::select::{Choice, Run as Drawn, figure};
+use bramah_plot::select::{FigureOptions, LabelledTrajectory as Drawn, figure};
 use bramah_results::{CsvUnits, Signal, Trajectory, number};
-use bramah_solve::{Checkpoint, Control, End, Progress, Run, Settings, Sink, resume, signals, simulate};
+use bramah_solve::{Checkpoint, Control, End, Progress, RowSink, RunResult, Settings, resume, signals, simulate};
 use bramah_syntax::diag::{Code, Diagnostic, Sources};
 
 /// Run a circuit
@@ -52,9 +52,9 @@ pub(super) struct SimulateArgs {
     checkpoint_every: Option<f64>,
 }
 
-pub(super) fn run(args: &SimulateArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &SimulateArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let experiment = args.model.experiment(Some(&args.run), messages)?;
-    let mut record = Record::default();
+    let mut record = StatisticsRecord::default();
     let work = AssertUnwindSafe(|| execute(args, &experiment, &mut record, messages));
     let outcome = catch_unwind(work);
     record.peak_memory_bytes = peak_memory();
@@ -68,10 +68,10 @@ pub(super) fn run(args: &SimulateArgs, messages: &mut Messages) -> Result<Ending
 
 fn execute(
     args: &SimulateArgs,
-    experiment: &Experiment,
-    record: &mut Record,
-    messages: &mut Messages,
-) -> Result<Ending, Failure> {
+    experiment: &ExperimentSpecification,
+    record: &mut StatisticsRecord,
+    messages: &mut MessageReporter,
+) -> Result<CommandStatus, CommandFailure> {
     let begun = Instant::now();
     let compiled = model::compile(experiment, messages);
     record.compile_s = Some(begun.elapsed().as_secs_f64());
@@ -87,7 +87,7 @@ fn execute(
             number::text(covered.stop)
         ));
     }
-    let target = Target::new(&output_name(experiment, &dae.class))?;
+    let target = ResultTarget::new(&output_name(experiment, &dae.class))?;
     settings.wanted = columns::choose(dae, &experiment.variables, &target)?;
     let signals = signals(dae, &settings.wanted);
     let intervals = (settings.stop_time - settings.start_time) / settings.interval;
@@ -97,26 +97,30 @@ fn execute(
     let kept = match &args.checkpoint {
         Some(path) => {
             settings.checkpoint_every = args.checkpoint_every.unwrap_or_else(|| usual_distance(&settings));
-            Some(Keeper::new(path, Marks::new(&dae.class, &sources, &settings, &recorded.inputs)))
+            Some(CheckpointFile::new(path, RunFingerprint::new(&dae.class, &sources, &settings, &recorded.inputs)))
         }
         None => None,
     };
-    let (rows, from) =
-        Rows::open(kept, &target, (signals, experiment.csv_units.unwrap_or_default()), experiment.plot.is_some())?;
+    let (rows, from) = RecorderSink::open(
+        kept,
+        &target,
+        (signals, experiment.csv_units.unwrap_or_default()),
+        experiment.plot.is_some(),
+    )?;
     if let Some(from) = &from {
         messages.remark(&format!("going on from {} s", number::text(from.state.time)));
     }
     let (run, rows) = solve(&model, &settings, &recorded, from.as_ref(), rows);
     fill(record, &run);
     let recorder = match rows.close(&run) {
-        Closed::Over(recorder) => *recorder,
-        Closed::Suspended(left, name) => {
+        RecorderEnding::Over(recorder) => *recorder,
+        RecorderEnding::Suspended(left, name) => {
             left?;
             return Ok(suspended(&run, &name, messages));
         }
     };
     if recorder.is_unread() {
-        return Ok(Ending::Fine);
+        return Ok(CommandStatus::Fine);
     }
     let rows = recorder.rows();
     let outcome = recorder.finish();
@@ -125,13 +129,17 @@ fn execute(
     if let Some(path) = &experiment.plot {
         draw(&trajectory, &dae.class, Path::new(path), messages)?;
     }
-    Ok(if run.end.is_success() { Ending::Fine } else { Ending::Wrong })
+    Ok(if run.end.is_success() { CommandStatus::Fine } else { CommandStatus::Wrong })
 }
 
 /// What the flags, the experiment file, the annotation and the recording say, in this order.
-fn settings(experiment: &Experiment, annotation: &flat::Experiment, recorded: &Recorded) -> Result<Settings, Failure> {
+fn settings(
+    experiment: &ExperimentSpecification,
+    annotation: &flat::ExperimentAnnotation,
+    recorded: &InputRecording,
+) -> Result<Settings, CommandFailure> {
     let covered = recorded.covered;
-    let said = flat::Experiment {
+    let said = flat::ExperimentAnnotation {
         start_time: experiment.start_time.or(annotation.start_time).or(covered.map(|c| c.start)),
         stop_time: experiment.stop_time.or(annotation.stop_time).or(covered.map(|c| c.stop)),
         interval: experiment.output_interval.or(annotation.interval),
@@ -147,7 +155,7 @@ fn settings(experiment: &Experiment, annotation: &flat::Experiment, recorded: &R
             number::text(settings.stop_time),
             number::text(settings.start_time)
         );
-        return Err(Failure::new(Code::BadArgument, text));
+        return Err(CommandFailure::new(Code::BadArgument, text));
     }
     if let Some(covered) = covered {
         check_cover(covered, settings.start_time, settings.stop_time)?;
@@ -155,66 +163,66 @@ fn settings(experiment: &Experiment, annotation: &flat::Experiment, recorded: &R
     Ok(settings)
 }
 
-fn output_name(experiment: &Experiment, class: &str) -> String {
+fn output_name(experiment: &ExperimentSpecification, class: &str) -> String {
     experiment.output_file.clone().unwrap_or_else(|| format!("{class}.csv"))
 }
 
 /// Takes rows and says when it makes no sense to go on.
-struct Rows {
-    recorder: Recorder,
+struct RecorderSink {
+    recorder: ResultRecorder,
     /// With checkpoints: where they are kept, and whether there is one.
-    kept: Option<(Keeper, bool)>,
+    kept: Option<(CheckpointFile, bool)>,
 }
 
 /// What became of the rows of a run.
-enum Closed {
+enum RecorderEnding {
     /// The run is over.
-    Over(Box<Recorder>),
+    Over(Box<ResultRecorder>),
     /// It was interrupted and can go on from the file of this name.
-    Suspended(Result<(), Failure>, String),
+    Suspended(Result<(), CommandFailure>, String),
 }
 
-impl Rows {
+impl RecorderSink {
     /// The rows of a run, and the checkpoint it goes on from.
     fn open(
-        kept: Option<Keeper>,
-        target: &Target,
+        kept: Option<CheckpointFile>,
+        target: &ResultTarget,
         (signals, units): (Vec<Signal>, CsvUnits),
         plot: bool,
-    ) -> Result<(Self, Option<Checkpoint>), Failure> {
+    ) -> Result<(Self, Option<Checkpoint>), CommandFailure> {
         let Some(keeper) = kept else {
-            let recorder = Recorder::new(target.clone(), signals, units, plot)?;
-            return Ok((Rows { recorder, kept: None }, None));
+            let recorder = ResultRecorder::new(target.clone(), signals, units, plot)?;
+            return Ok((RecorderSink { recorder, kept: None }, None));
         };
         if plot {
             let diagnostic = Diagnostic::new(Code::BadArgument, "a run with checkpoints cannot be drawn at once");
             return Err(diagnostic.help("draw its result with `bramah plot` afterwards").into());
         }
         let (from, written) = keeper.load(target)?.unzip();
-        let recorder = Recorder::lasting(target.clone(), signals, units, written.as_ref())?;
-        Ok((Rows { recorder, kept: Some((keeper, from.is_some())) }, from))
+        let recorder = ResultRecorder::lasting(target.clone(), signals, units, written.as_ref())?;
+        Ok((RecorderSink { recorder, kept: Some((keeper, from.is_some())) }, from))
     }
 
     /// Ends the writing; removes checkpoints that are of no use any more.
-    fn close(self, run: &Run) -> Closed {
-        let Rows { mut recorder, kept } = self;
+    fn close(self, run: &RunResult) -> RecorderEnding {
+        let RecorderSink { mut recorder, kept } = self;
         match kept {
             Some((keeper, true)) if run.end == End::Interrupted => {
                 let name = keeper.name();
-                Closed::Suspended(recorder.suspend(), name)
+                RecorderEnding::Suspended(recorder.suspend(), name)
             }
             Some((keeper, _)) => {
                 if let Err(failure) = keeper.remove() {
                     recorder.failed(failure);
                 }
-                Closed::Over(Box::new(recorder))
+                RecorderEnding::Over(Box::new(recorder))
             }
-            None => Closed::Over(Box::new(recorder)),
+            None => RecorderEnding::Over(Box::new(recorder)),
         }
     }
 }
 
-impl Sink for Rows {
+impl RowSink for RecorderSink {
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
         if self.recorder.row(time, values) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
@@ -242,11 +250,11 @@ impl Sink for Rows {
 fn solve(
     model: &CompiledModel,
     settings: &Settings,
-    recorded: &Recorded,
+    recorded: &InputRecording,
     from: Option<&Checkpoint>,
-    mut rows: Rows,
-) -> (Run, Rows) {
-    let bar = Bar::new(settings.start_time, settings.stop_time);
+    mut rows: RecorderSink,
+) -> (RunResult, RecorderSink) {
+    let bar = SimulationBar::new(settings.start_time, settings.stop_time);
     let mut show = |progress: &Progress| {
         bar.show(progress.time, None, progress.events);
         true
@@ -264,16 +272,16 @@ fn solve(
 }
 
 /// Says how an interrupted run goes on.
-fn suspended(run: &Run, checkpoint: &str, messages: &mut Messages) -> Ending {
+fn suspended(run: &RunResult, checkpoint: &str, messages: &mut MessageReporter) -> CommandStatus {
     let mut diagnostics = run.diagnostics.clone();
     if let Some(error) = diagnostics.iter_mut().find(|d| d.is_error()) {
         error.help.push(format!("the same command goes on from the last checkpoint in `{checkpoint}`"));
     }
     messages.say(&diagnostics);
-    Ending::Wrong
+    CommandStatus::Wrong
 }
 
-fn fill(record: &mut Record, run: &Run) {
+fn fill(record: &mut StatisticsRecord, run: &RunResult) {
     let s = &run.statistics;
     record.initialize_s = Some(s.initialize_s);
     record.solve_s = Some(s.solve_s);
@@ -289,7 +297,7 @@ fn fill(record: &mut Record, run: &Run) {
 }
 
 /// What the run had to say, and one line on how it went.
-fn report(run: &Run, rows: usize, target: &Target, messages: &Messages) {
+fn report(run: &RunResult, rows: usize, target: &ResultTarget, messages: &MessageReporter) {
     let mut diagnostics = run.diagnostics.clone();
     if let Some(error) = diagnostics.iter_mut().find(|d| d.is_error()) {
         error.notes.push(format!(
@@ -312,10 +320,10 @@ fn report(run: &Run, rows: usize, target: &Target, messages: &Messages) {
     messages.remark(&line);
 }
 
-fn draw(trajectory: &Trajectory, class: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
-    let choice = Choice { title: class.to_owned(), ..Choice::default() };
+fn draw(trajectory: &Trajectory, class: &str, path: &Path, messages: &MessageReporter) -> Result<(), CommandFailure> {
+    let choice = FigureOptions { title: class.to_owned(), ..FigureOptions::default() };
     let selected = figure(&[Drawn { label: class, trajectory }], &choice)
-        .map_err(|e| Failure::from(Diagnostic::new(Code::BadArgument, format!("nothing to draw: {e}"))))?;
+        .map_err(|e| CommandFailure::from(Diagnostic::new(Code::BadArgument, format!("nothing to draw: {e}"))))?;
     if selected.left_out > 0 {
         messages.remark(&format!("{} more variables are not drawn; choose with --variables", selected.left_out));
     }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// One JSON object; what is not known is null. Times in seconds.
 #[derive(Clone, Debug, Default, Serialize)]
-pub(super) struct Record {
+pub(super) struct StatisticsRecord {
     /// From process start to the lowered system.
     pub compile_s: Option<f64>,
     /// Finding the initial values.
@@ -33,7 +33,7 @@ pub(super) struct Record {
     pub end: Option<&'static str>,
 }
 
-impl Record {
+impl StatisticsRecord {
     /// As text.
     pub fn to_json(&self) -> String {
         let text = serde_json::to_string_pretty(self).expect("numbers and words always serialize");
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn all_keys_are_there() {
-        let value: serde_json::Value = serde_json::from_str(&Record::default().to_json()).unwrap();
+        let value: serde_json::Value = serde_json::from_str(&StatisticsRecord::default().to_json()).unwrap();
         let keys: Vec<&String> = value.as_object().unwrap().keys().collect();
         assert_eq!(keys.len(), 13);
         assert_eq!((keys[0].as_str(), keys[12].as_str()), ("compile_s", "end"));

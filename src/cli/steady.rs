@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::axes::Entry;
+use super::axes::AxisOption;
 use super::linearize::{run_to, state_at};
-use super::messages::Messages;
+use super::messages::MessageReporter;
 use super::recorder::write_points;
 use super::request::ModelArgs;
-use super::{Ending, Failure, columns, files, interrupt, model};
-use bramah_analysis::balance::{self, Budget};
+use super::{CommandFailure, CommandStatus, columns, files, interrupt, model};
+use bramah_analysis::balance::{self, PowerBalance};
 use bramah_analysis::experiment::seconds;
-use bramah_analysis::linear::{Choice, Chosen};
+use bramah_analysis::linear::{InputOutputSelection, LinearizationSetup};
 use bramah_analysis::steady::{rest, run_from};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
@@ -62,7 +62,7 @@ pub(super) struct SteadyArgs {
     transient: bool,
 }
 
-pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &SteadyArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     if let Some(path) = &args.sankey {
         let of_picture = ["svg", "png"].iter().any(|e| path.extension().is_some_and(|x| x.eq_ignore_ascii_case(e)));
         if !of_picture {
@@ -78,11 +78,12 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
         let settings = Settings { wanted: balance::wanted(&ports), ..Settings::from_experiment(&model.dae.experiment) };
         let (_, rows) = run_to(&model, &settings)?;
         power(args, &model, &ports, &rows, messages)?;
-        return Ok(Ending::Fine);
+        return Ok(CommandStatus::Fine);
     }
     let (over, values) = over(args, &model)?;
-    let chosen = Chosen::new(&model.flat, &Choice { inputs: over.clone(), outputs: Vec::new() }, &[]);
-    let chosen = chosen.map_err(|diagnostics| Failure { diagnostics })?;
+    let chosen =
+        LinearizationSetup::new(&model.flat, &InputOutputSelection { inputs: over.clone(), outputs: Vec::new() }, &[]);
+    let chosen = chosen.map_err(|diagnostics| CommandFailure { diagnostics })?;
     let wanted = wanted(args, &model, &chosen)?;
     let mut table = Trajectory::new(signals(&model.dae, &wanted));
     let moved = chosen.asked();
@@ -119,21 +120,21 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut Messages) -> Result<Ending, 
         let rows = moment(&model, &chosen, &state, &balance::wanted(&ports))?.0;
         power(args, &model, &ports, &rows, messages)?;
     }
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
 /// What is moved, and its values; one point without a name where nothing is.
-fn over(args: &SteadyArgs, model: &CompiledModel) -> Result<(Vec<String>, Vec<f64>), Failure> {
+fn over(args: &SteadyArgs, model: &CompiledModel) -> Result<(Vec<String>, Vec<f64>), CommandFailure> {
     let Some(entry) = &args.over else { return Ok((Vec::new(), vec![0.0])) };
-    let entry = Entry::parse("--over", entry)?;
+    let entry = AxisOption::parse("--over", entry)?;
     let variable = model.flat.variables.iter().find(|v| v.name == entry.name);
     let values = entry.values(variable.and_then(|v| v.unit.as_deref()).unwrap_or(""))?;
     Ok((vec![entry.name.to_owned()], values))
 }
 
-fn wanted(args: &SteadyArgs, model: &CompiledModel, chosen: &Chosen) -> Result<Vec<VarId>, Failure> {
+fn wanted(args: &SteadyArgs, model: &CompiledModel, chosen: &LinearizationSetup) -> Result<Vec<VarId>, CommandFailure> {
     if !args.variables.is_empty() {
-        return columns::choose(&model.dae, &args.variables, &super::recorder::Target::Stdout);
+        return columns::choose(&model.dae, &args.variables, &super::recorder::ResultTarget::Stdout);
     }
     let outputs = (0..).map(VarId).zip(&model.flat.variables).filter(|(_, v)| v.output).map(|(v, _)| v);
     let states = chosen.plan.state_variables().filter(|v| v.index() < model.flat.variables.len());
@@ -148,27 +149,27 @@ const MOMENT: f64 = 1e-3;
 
 fn moment(
     model: &CompiledModel,
-    chosen: &Chosen,
+    chosen: &LinearizationSetup,
     state: &State,
     wanted: &[VarId],
-) -> Result<(Trajectory, State), Failure> {
+) -> Result<(Trajectory, State), CommandFailure> {
     let ran = run_from(model, chosen, state, MOMENT, wanted, interrupt::flag());
-    ran.map_err(|diagnostics| Failure { diagnostics })
+    ran.map_err(|diagnostics| CommandFailure { diagnostics })
 }
 
 /// The values at a steady state, and the state with everything that follows from it.
 fn settled(
     model: &CompiledModel,
-    chosen: &Chosen,
+    chosen: &LinearizationSetup,
     state: &State,
     wanted: &[VarId],
-) -> Result<(Vec<f64>, State), Failure> {
+) -> Result<(Vec<f64>, State), CommandFailure> {
     let (rows, mut after) = moment(model, chosen, state, wanted)?;
     after.time = state.time;
     Ok((rows.columns.iter().map(|c| c[0]).collect(), after))
 }
 
-fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), Failure> {
+fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), CommandFailure> {
     if let Some(path) = &args.output_file {
         let mut all: Vec<Signal> = over.iter().map(Signal::new).collect();
         all.extend(table.signals.iter().cloned());
@@ -191,10 +192,10 @@ fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), Fa
 fn power(
     args: &SteadyArgs,
     model: &CompiledModel,
-    ports: &[balance::Port],
+    ports: &[balance::PowerPort],
     rows: &Trajectory,
-    messages: &Messages,
-) -> Result<(), Failure> {
+    messages: &MessageReporter,
+) -> Result<(), CommandFailure> {
     let powers = balance::powers(ports, rows);
     let budgets = balance::budgets(ports, &powers, &model.graph);
     files::print(&balance_words(&budgets))?;
@@ -203,19 +204,19 @@ fn power(
     // at rest nothing is stored any more
     streams.extend(balance::left(&budgets, if args.transient { "lost or stored" } else { "power lost" }));
     let most = streams.iter().map(|s| s.power).fold(0.0, f64::max);
-    let flows: Vec<sankey::Flow> = streams
+    let flows: Vec<sankey::SankeyFlow> = streams
         .into_iter()
         .filter(|s| s.power > 1e-4 * most)
-        .map(|s| sankey::Flow { from: s.from, to: s.to, size: s.power })
+        .map(|s| sankey::SankeyFlow { from: s.from, to: s.to, size: s.power })
         .collect();
     draw(&sankey::svg(&format!("{}: power", model.dae.class), &flows, watts), path, messages)
 }
 
-fn draw(svg: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
+fn draw(svg: &str, path: &Path, messages: &MessageReporter) -> Result<(), CommandFailure> {
     match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
         Some("svg") => files::write(path, svg.as_bytes())?,
         Some("png") => {
-            let bytes = png::write(svg).map_err(|e| Failure::new(Code::BadArgument, e))?;
+            let bytes = png::write(svg).map_err(|e| CommandFailure::new(Code::BadArgument, e))?;
             files::write(path, &bytes)?;
         }
         _ => return Err(no_picture(path)),
@@ -224,9 +225,9 @@ fn draw(svg: &str, path: &Path, messages: &Messages) -> Result<(), Failure> {
     Ok(())
 }
 
-fn no_picture(path: &Path) -> Failure {
+fn no_picture(path: &Path) -> CommandFailure {
     let text = format!("this picture is written as .svg or .png, not as `{}`", path.display());
-    Failure::new(Code::BadArgument, text)
+    CommandFailure::new(Code::BadArgument, text)
 }
 
 fn watts(power: f64) -> String {
@@ -237,7 +238,7 @@ fn watts(power: f64) -> String {
     }
 }
 
-fn balance_words(budgets: &[Budget]) -> String {
+fn balance_words(budgets: &[PowerBalance]) -> String {
     let mut out = String::from("power into components, positive is lost or stored\n");
     let most = budgets.iter().map(|b| b.net.abs()).fold(0.0, f64::max);
     let width = budgets.iter().map(|b| b.component.len()).max().unwrap_or(0);

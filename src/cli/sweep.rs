@@ -9,12 +9,12 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::files::{self, access};
-use super::messages::Messages;
-use super::recorder::Target;
+use super::messages::MessageReporter;
+use super::recorder::ResultTarget;
 use super::request::ModelArgs;
-use super::{Ending, Failure, columns, interrupt, model, plot};
-use bramah_analysis::experiment::{Experiment, Sampling, Sweep};
-use bramah_analysis::sweep::{Plan, Table, fingerprint, indices, matrix, scatter};
+use super::{CommandFailure, CommandStatus, columns, interrupt, model, plot};
+use bramah_analysis::experiment::{ExperimentSpecification, ParameterSweep, SamplingMethod};
+use bramah_analysis::sweep::{SweepPlan, SweepTable, fingerprint, indices, matrix, scatter};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_model::flat;
 use bramah_plot::matrix::write as draw;
@@ -71,7 +71,7 @@ fn part(text: &str) -> Result<(usize, usize), String> {
         .ok_or_else(|| "K/N is expected, with 1 <= K <= N".to_owned())
 }
 
-pub(super) fn run(args: &SweepArgs, messages: &mut Messages) -> Result<Ending, Failure> {
+pub(super) fn run(args: &SweepArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     if let Some(path) = &args.output_file {
         files::ending(path, "a table of runs", &["csv", "parquet"])?;
     }
@@ -79,7 +79,10 @@ pub(super) fn run(args: &SweepArgs, messages: &mut Messages) -> Result<Ending, F
         return merge(args, messages);
     }
     let [file] = &args.files[..] else {
-        return Err(Failure::new(Code::BadArgument, "one experiment file is expected; several tables need --merge"));
+        return Err(CommandFailure::new(
+            Code::BadArgument,
+            "one experiment file is expected; several tables need --merge",
+        ));
     };
     let model_args = ModelArgs {
         file: file.clone(),
@@ -96,15 +99,15 @@ pub(super) fn run(args: &SweepArgs, messages: &mut Messages) -> Result<Ending, F
         return Err(d.help("say there which parameters vary; docs/sweep.md shows how").into());
     };
     let model = model::compile(&experiment, messages)?;
-    let plan = Plan::new(&model, &sweep).map_err(|diagnostics| Failure { diagnostics })?;
+    let plan = SweepPlan::new(&model, &sweep).map_err(|diagnostics| CommandFailure { diagnostics })?;
     let settings = settings(args, &experiment, &model, &plan)?;
     let output = with_lines(&output(args, file));
     let table = execute(args, &model, &plan, &settings, &output, messages)?;
     report(args, &sweep, &plan, &table, &output, messages)
 }
 
-fn assignment(text: &str) -> Result<(String, String), Failure> {
-    let wrong = || Failure::new(Code::BadArgument, format!("`--set {text}`: NAME=VALUE is expected"));
+fn assignment(text: &str) -> Result<(String, String), CommandFailure> {
+    let wrong = || CommandFailure::new(Code::BadArgument, format!("`--set {text}`: NAME=VALUE is expected"));
     let (name, value) = text.split_once('=').ok_or_else(wrong)?;
     Ok((name.trim().to_owned(), value.trim().to_owned()))
 }
@@ -119,12 +122,12 @@ fn output(args: &SweepArgs, file: &str) -> PathBuf {
 
 fn settings(
     args: &SweepArgs,
-    experiment: &Experiment,
+    experiment: &ExperimentSpecification,
     model: &CompiledModel,
-    plan: &Plan,
-) -> Result<Settings, Failure> {
+    plan: &SweepPlan,
+) -> Result<Settings, CommandFailure> {
     let annotation = &model.dae.experiment;
-    let mut settings = Settings::from_experiment(&flat::Experiment {
+    let mut settings = Settings::from_experiment(&flat::ExperimentAnnotation {
         start_time: experiment.start_time.or(annotation.start_time),
         stop_time: experiment.stop_time.or(annotation.stop_time),
         interval: experiment.output_interval.or(annotation.interval),
@@ -132,7 +135,7 @@ fn settings(
     });
     settings.wanted.clone_from(&plan.wanted);
     if args.trajectories.is_some() {
-        let target = Target::Stdout;
+        let target = ResultTarget::Stdout;
         let more = columns::choose(&model.dae, &experiment.variables, &target)?;
         settings.wanted.extend(more.into_iter().filter(|v| !plan.wanted.contains(v)));
     }
@@ -141,25 +144,25 @@ fn settings(
 
 /// The file that takes a line a run: Parquet cannot grow.
 fn with_lines(output: &Path) -> PathBuf {
-    if Target::is_parquet(output) { output.with_extension("csv") } else { output.to_owned() }
+    if ResultTarget::is_parquet(output) { output.with_extension("csv") } else { output.to_owned() }
 }
 
 /// The whole table once more as Parquet, where that is wanted.
-fn write_parquet(args: &SweepArgs, table: &Table) -> Result<(), Failure> {
-    let Some(path) = args.output_file.as_ref().filter(|path| Target::is_parquet(path)) else { return Ok(()) };
+fn write_parquet(args: &SweepArgs, table: &SweepTable) -> Result<(), CommandFailure> {
+    let Some(path) = args.output_file.as_ref().filter(|path| ResultTarget::is_parquet(path)) else { return Ok(()) };
     let mut bytes = Vec::new();
     write_table(&mut bytes, &table.typed()).map_err(|e| access(path, "written", &e))?;
     files::write(path, &bytes)
 }
 
 /// The table as far as an earlier start of the same sweep made it.
-fn resumed(path: &Path, empty: Table) -> Result<Table, Failure> {
+fn resumed(path: &Path, empty: SweepTable) -> Result<SweepTable, CommandFailure> {
     let Ok(text) = std::fs::read_to_string(path) else { return Ok(empty) };
     let other = |why: &str| {
         let d = Diagnostic::new(Code::FileAccess, format!("`{}` exists, and {why}", path.display()));
-        Failure::from(d.help("remove it, or choose another name with --output-file"))
+        CommandFailure::from(d.help("remove it, or choose another name with --output-file"))
     };
-    let table = Table::read(&text).map_err(|e| other(&e))?;
+    let table = SweepTable::read(&text).map_err(|e| other(&e))?;
     let mut whole = empty;
     whole.merge(table).map_err(|e| other(&e))?;
     Ok(whole)
@@ -168,11 +171,11 @@ fn resumed(path: &Path, empty: Table) -> Result<Table, Failure> {
 fn execute(
     args: &SweepArgs,
     model: &CompiledModel,
-    plan: &Plan,
+    plan: &SweepPlan,
     settings: &Settings,
     output: &Path,
-    messages: &Messages,
-) -> Result<Table, Failure> {
+    messages: &MessageReporter,
+) -> Result<SweepTable, CommandFailure> {
     let names: Vec<String> =
         plan.varied.iter().map(|v| v.name.clone()).chain(plan.results.iter().map(|r| r.0.clone())).collect();
     let mut words = names.clone();
@@ -180,7 +183,7 @@ fn execute(
     words.extend(plan.results.iter().map(|r| format!("{:?}", r.1)));
     words.push(format!("{} {} {}", settings.start_time, settings.stop_time, settings.tolerance));
     words.extend(args.set.iter().cloned());
-    let empty = Table::new(fingerprint(&words, &plan.samples), plan.samples.len(), names);
+    let empty = SweepTable::new(fingerprint(&words, &plan.samples), plan.samples.len(), names);
     let mut table = resumed(output, empty)?;
     let (k, n) = args.part.unwrap_or((1, 1));
     let all: Vec<usize> = (1..=plan.samples.len()).filter(|run| (run - 1) % n == k - 1).collect();
@@ -205,7 +208,7 @@ fn execute(
         Some(jobs) => rayon::ThreadPoolBuilder::new()
             .num_threads(jobs.into())
             .build()
-            .map_err(|e| Failure::new(Code::BadArgument, e.to_string()))?
+            .map_err(|e| CommandFailure::new(Code::BadArgument, e.to_string()))?
             .install(work),
         None => work(),
     }
@@ -222,10 +225,17 @@ fn execute(
     Ok(table)
 }
 
-type Shared = Mutex<(std::fs::File, Vec<(usize, (Vec<f64>, String))>, Option<std::io::Error>)>;
+type SweepOutput = Mutex<(std::fs::File, Vec<(usize, (Vec<f64>, String))>, Option<std::io::Error>)>;
 
 /// One run, and its line in the table.
-fn one(args: &SweepArgs, model: &CompiledModel, plan: &Plan, settings: &Settings, run: usize, shared: &Shared) {
+fn one(
+    args: &SweepArgs,
+    model: &CompiledModel,
+    plan: &SweepPlan,
+    settings: &Settings,
+    run: usize,
+    shared: &SweepOutput,
+) {
     let stop = interrupt::flag();
     if stop.load(Ordering::Relaxed) {
         return;
@@ -243,7 +253,7 @@ fn one(args: &SweepArgs, model: &CompiledModel, plan: &Plan, settings: &Settings
     };
     let values: Vec<f64> = plan.samples[run - 1].iter().copied().chain(results).collect();
     let mut shared = shared.lock().expect("no run panics while it holds the table");
-    if let Err(e) = shared.0.write_all(Table::line(run, &values, &status).as_bytes()) {
+    if let Err(e) = shared.0.write_all(SweepTable::line(run, &values, &status).as_bytes()) {
         shared.2.get_or_insert(e);
     }
     shared.1.push((run, (values, status)));
@@ -266,17 +276,17 @@ fn trajectory(
 
 fn report(
     args: &SweepArgs,
-    sweep: &Sweep,
-    plan: &Plan,
-    table: &Table,
+    sweep: &ParameterSweep,
+    plan: &SweepPlan,
+    table: &SweepTable,
     output: &Path,
-    messages: &Messages,
-) -> Result<Ending, Failure> {
+    messages: &MessageReporter,
+) -> Result<CommandStatus, CommandFailure> {
     write_parquet(args, table)?;
     let failed = table.rows.values().filter(|r| r.1 != "ok").count();
     let bad = if failed > 0 { format!(", {failed} failed (see the column `status`)") } else { String::new() };
     messages.remark(&format!("{} runs in {}{bad}", table.rows.len(), output.display()));
-    if sweep.method == Sampling::Sobol && table.rows.len() == table.runs {
+    if sweep.method == SamplingMethod::Sobol && table.rows.len() == table.runs {
         files::print(&sobol_words(sweep, plan, table))?;
     }
     if let Some(path) = &args.plot {
@@ -284,11 +294,11 @@ fn report(
         let drawn = draw(&matrix(table, plan.varied.len(), &title));
         plot::write_picture(&drawn, &scatter(table, plan.varied.len(), &title), path, messages)?;
     }
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
 /// First-order and total indices of each result.
-fn sobol_words(sweep: &Sweep, plan: &Plan, table: &Table) -> String {
+fn sobol_words(sweep: &ParameterSweep, plan: &SweepPlan, table: &SweepTable) -> String {
     let d = plan.varied.len();
     let mut out = String::new();
     for (r, (name, _)) in plan.results.iter().enumerate() {
@@ -308,25 +318,25 @@ fn sobol_words(sweep: &Sweep, plan: &Plan, table: &Table) -> String {
     out
 }
 
-fn merge(args: &SweepArgs, messages: &Messages) -> Result<Ending, Failure> {
+fn merge(args: &SweepArgs, messages: &MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let Some(output) = &args.output_file else {
-        return Err(Failure::new(Code::BadArgument, "--merge needs --output-file for the joined table"));
+        return Err(CommandFailure::new(Code::BadArgument, "--merge needs --output-file for the joined table"));
     };
-    let mut whole: Option<Table> = None;
+    let mut whole: Option<SweepTable> = None;
     for file in &args.files {
         let path = Path::new(file);
         let text = std::fs::read_to_string(path).map_err(|e| access(path, "read", &e))?;
-        let wrong = |e: String| Failure::new(Code::BadData, format!("`{file}` cannot be joined: {e}"));
-        let table = Table::read(&text).map_err(wrong)?;
+        let wrong = |e: String| CommandFailure::new(Code::BadData, format!("`{file}` cannot be joined: {e}"));
+        let table = SweepTable::read(&text).map_err(wrong)?;
         match &mut whole {
             None => whole = Some(table),
             Some(whole) => whole.merge(table).map_err(wrong)?,
         }
     }
-    let Some(whole) = whole else { return Ok(Ending::Fine) };
+    let Some(whole) = whole else { return Ok(CommandStatus::Fine) };
     files::write(&with_lines(output), whole.text().as_bytes())?;
     write_parquet(args, &whole)?;
     let missing = whole.runs - whole.rows.len().min(whole.runs);
     messages.remark(&format!("{} runs in {}, {missing} missing", whole.rows.len(), output.display()));
-    Ok(if missing == 0 { Ending::Fine } else { Ending::Wrong })
+    Ok(if missing == 0 { CommandStatus::Fine } else { CommandStatus::Wrong })
 }

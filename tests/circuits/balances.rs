@@ -137,13 +137,14 @@ impl Circuit {
         let all = names(&|_| true).into_iter().map(|c| (c.clone(), class_of(&c))).collect();
         // a source of flow alone asks for the density of the circuit's oil, and holds none
         let holds =
-            |v: &bramah::internals::flat::Variable| v.name.ends_with(".mass") && v.unit.as_deref() == Some("kg");
+            |v: &bramah::internals::flat::FlatVariable| v.name.ends_with(".mass") && v.unit.as_deref() == Some("kg");
         let variables = &flattened.flat.variables;
         let has_oil = !oil.is_empty() && variables.iter().any(|v| v.name == "oil.T") && variables.iter().any(holds);
         let closed = oil.iter().all(|c| c.1);
         let class = class.to_owned();
-        let heat = |v: &bramah::internals::flat::Variable| v.name.ends_with(".T_oil") || v.name.ends_with(".T_case");
-        let of_oil = |v: &bramah::internals::flat::Variable| heat(v) && v.fixed && v.start.is_some();
+        let heat =
+            |v: &bramah::internals::flat::FlatVariable| v.name.ends_with(".T_oil") || v.name.ends_with(".T_case");
+        let of_oil = |v: &bramah::internals::flat::FlatVariable| heat(v) && v.fixed && v.start.is_some();
         let thermal = flattened.flat.variables.iter().any(of_oil);
         has_oil.then(|| Circuit { class, oil, all, flat: flattened.flat, default_oil, closed, thermal })
     }

@@ -9,7 +9,7 @@ use crate::rig;
 use std::process::Command;
 
 use bramah::Simulation;
-use bramah::internals::analysis::linear::{Choice, Chosen, linearize, response};
+use bramah::internals::analysis::linear::{InputOutputSelection, LinearizationSetup, linearize, response};
 use bramah::results::Trajectory;
 use disk::Disk;
 use rig::{at, circuit, column, last, line, mean_from, near, run, shipped, shipped_with};
@@ -540,8 +540,8 @@ fn the_speed_controller_has_its_phase_margin_everywhere() {
     for (i, (f, n, k_p, k_i)) in (1..).zip(table) {
         let state = circuit.stop_time(1e-3).set("f", f).expect("a parameter").run().expect("it runs").state;
         let model = circuit.model();
-        let choice = Choice { inputs: vec!["f".into()], outputs: vec!["n_m".into()] };
-        let chosen = Chosen::new(&model.flat, &choice, &[]).expect("an input and an output");
+        let choice = InputOutputSelection { inputs: vec!["f".into()], outputs: vec!["n_m".into()] };
+        let chosen = LinearizationSetup::new(&model.flat, &choice, &[]).expect("an input and an output");
         let linear = linearize(model, &chosen, &state).expect("finite");
         let crossover = 3.0 * k_i / k_p;
         let plant = response(&linear, crossover / std::f64::consts::TAU).expect("no pole there")[(0, 0)];

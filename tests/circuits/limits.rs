@@ -13,8 +13,8 @@ use crate::rig;
 use bramah::Request;
 use bramah::internals::compile::{CompiledModel, compile};
 use bramah::internals::expr::VarId;
-use bramah::internals::flat::{Type, Variability};
-use bramah::internals::lower::Options;
+use bramah::internals::flat::{ScalarType, Variability};
+use bramah::internals::lower::LoweringOptions;
 use bramah::internals::solve::{Control, End, Progress, Settings, signals, simulate};
 use bramah::results::{Trajectory, number};
 use disk::Disk;
@@ -50,7 +50,7 @@ fn from_environment(name: &str, otherwise: u64) -> u64 {
 struct Parameter {
     id: VarId,
     name: String,
-    ty: Type,
+    ty: ScalarType,
     value: f64,
     min: f64,
     max: f64,
@@ -60,7 +60,7 @@ struct Parameter {
 fn model(class: &str, native: bool) -> CompiledModel {
     let library = concat!(env!("CARGO_MANIFEST_DIR"), "/components").into();
     let request = Request { source: class.into(), libraries: vec![library], ..Request::default() };
-    let compiled = compile(&Disk, &request, &Options { native, ..Options::default() });
+    let compiled = compile(&Disk, &request, &LoweringOptions { native, ..LoweringOptions::default() });
     compiled.value.unwrap_or_else(|| panic!("{class} does not compile"))
 }
 
@@ -89,13 +89,13 @@ fn parameters(model: &CompiledModel) -> Vec<Parameter> {
 /// A value that the declaration allows: near the given one, at a limit, or anywhere between.
 fn draw(p: &Parameter, numbers: &mut Numbers, model: &CompiledModel) -> f64 {
     match p.ty {
-        Type::Boolean => f64::from(numbers.next() < 0.5),
-        Type::Enumeration(e) => {
+        ScalarType::Boolean => f64::from(numbers.next() < 0.5),
+        ScalarType::Enumeration(e) => {
             let literals = model.dae.enumerations[e as usize].1.len() as f64;
             1.0 + (numbers.next() * literals).floor()
         }
-        Type::Integer => between_limits(p, numbers).round(),
-        Type::Real => between_limits(p, numbers),
+        ScalarType::Integer => between_limits(p, numbers).round(),
+        ScalarType::Real => between_limits(p, numbers),
     }
 }
 
@@ -220,7 +220,7 @@ fn a_parameter_at_its_limit_gives_numbers() {
     let mut number = 0;
     for class in examples() {
         let model = model(class, thorough());
-        for p in parameters(&model).iter().filter(|p| matches!(p.ty, Type::Real | Type::Integer)) {
+        for p in parameters(&model).iter().filter(|p| matches!(p.ty, ScalarType::Real | ScalarType::Integer)) {
             for value in [p.min, p.max].into_iter().filter(|v| v.abs() < HUGE) {
                 number += 1;
                 if number % SOME != 0 && !thorough() {

@@ -4,9 +4,11 @@
 use bramah::Interpolation;
 use bramah::Simulation;
 use bramah::Sources;
-use bramah::internals::analysis::identify::{Fit, Identification, Method, Problem, separation_words};
+use bramah::internals::analysis::identify::{
+    Identification, IdentificationProblem, IdentifyMethod, ParameterFit, separation_words,
+};
 use bramah::internals::compile::compile;
-use bramah::internals::study::{Recording, Role, Study};
+use bramah::internals::study::{Recording, RecordingRole, Study};
 use bramah::world::MemoryWorld;
 use std::path::Path;
 
@@ -55,7 +57,7 @@ fn map(signals: &[&str]) -> Recording {
     let signals = signals.iter().map(&mut column).collect();
     Recording {
         file: "map.csv".into(),
-        role: Role::Train,
+        role: RecordingRole::Train,
         times: times.clone(),
         inputs: vec![speed, pressure],
         signals,
@@ -67,7 +69,7 @@ fn map(signals: &[&str]) -> Recording {
 fn asked<T>(
     signals: &[&str],
     parameters: &[&str],
-    see: impl FnOnce(&Problem<'_>, &Identification<'_>, Option<Fit>) -> T,
+    see: impl FnOnce(&IdentificationProblem<'_>, &Identification<'_>, Option<ParameterFit>) -> T,
     fit: bool,
 ) -> T {
     let mut world = MemoryWorld::single("Bench.mo", BENCH);
@@ -82,8 +84,8 @@ fn asked<T>(
     let model = compile(&world, &study.request(), &Default::default()).value.expect("compiles");
     let bound = study.bind(&model.flat).value.expect("fits");
     let train = [map(signals)];
-    let problem = Problem::new(&model, &bound, &train).expect("a sound question");
-    let found = Identification::new(&problem, &train, Method::Output).expect("runs");
+    let problem = IdentificationProblem::new(&model, &bound, &train).expect("a sound question");
+    let found = Identification::new(&problem, &train, IdentifyMethod::Output).expect("runs");
     let fit = fit.then(|| found.fit().expect("runs"));
     see(&problem, &found, fit)
 }

@@ -314,7 +314,7 @@ fn oil_of_one_temperature_has_no_heat_in_it() {
         let model = bramah::internals::compile::compile(
             &MemoryWorld::default(),
             &request,
-            &bramah::internals::lower::Options::default(),
+            &bramah::internals::lower::LoweringOptions::default(),
         )
         .value
         .unwrap_or_else(|| panic!("{class} compiles"));

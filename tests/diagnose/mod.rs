@@ -2,11 +2,11 @@
 #![allow(dead_code, reason = "each test file uses a part")]
 
 use bramah::Request;
-use bramah::internals::compile::Outcome;
+use bramah::internals::compile::CompileOutcome;
 use bramah::internals::diag::{Diagnostic, Severity, Sources};
 use bramah::internals::expr::VarId;
-use bramah::internals::lower::Options;
-use bramah::internals::solve::{Control, Settings, Sink, simulate};
+use bramah::internals::lower::LoweringOptions;
+use bramah::internals::solve::{Control, RowSink, Settings, simulate};
 use bramah::world::MemoryWorld;
 use std::ops::ControlFlow;
 
@@ -36,8 +36,8 @@ impl Report {
 pub fn report(text: &str, model: Option<&str>, run: bool) -> Report {
     let world = MemoryWorld::single("model.mo", text);
     let request = Request { source: "model.mo".into(), model: model.map(Into::into), ..Request::default() };
-    let Outcome { sources, mut diagnostics, value } =
-        bramah::internals::compile::compile(&world, &request, &Options::INTERPRETED);
+    let CompileOutcome { sources, mut diagnostics, value } =
+        bramah::internals::compile::compile(&world, &request, &LoweringOptions::INTERPRETED);
     if let Some(model) = value.filter(|_| run) {
         let all = (0..model.flat.variables.len()).map(|i| VarId(u32::try_from(i).expect("few variables")));
         let settings = Settings { wanted: all.collect(), ..Settings::from_experiment(&model.flat.experiment) };
@@ -50,7 +50,7 @@ pub fn report(text: &str, model: Option<&str>, run: bool) -> Report {
 /// Forgets the results.
 struct Nowhere;
 
-impl Sink for Nowhere {
+impl RowSink for Nowhere {
     fn row(&mut self, _time: f64, _values: &[f64]) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }

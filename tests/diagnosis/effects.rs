@@ -7,26 +7,26 @@
 )]
 
 use bramah::Interpolation;
-use bramah::internals::compile::Outcome;
-use bramah::internals::diag::render::{Format, render};
-use bramah::internals::gap::augment::{Attached, augment, compile};
-use bramah::internals::gap::circuit::{Circuit, circuit};
-use bramah::internals::gap::effects::{Attach, Effect, catalogue};
+use bramah::internals::compile::CompileOutcome;
+use bramah::internals::diag::render::{DiagnosticFormat, render};
+use bramah::internals::gap::augment::{HypothesisInstance, augment, compile};
+use bramah::internals::gap::circuit::{CircuitTopology, circuit};
+use bramah::internals::gap::effects::{AttachmentKind, EffectModel, catalogue};
 use bramah::internals::gap::fixed::fixed;
-use bramah::internals::gap::hypotheses::{Free, Hypothesis, Signal, Site, hypotheses};
+use bramah::internals::gap::hypotheses::{AttachmentSite, Hypothesis, SensorSignal, UncertainParameter, hypotheses};
 use bramah::internals::lower;
 use bramah::results::Trajectory;
 use bramah::world::{MemoryWorld, World};
 use bramah::{Request, Simulation};
 use std::path::{Path, PathBuf};
 
-fn value<T>(outcome: Outcome<T>) -> T {
-    let said = render(&outcome.sources, &outcome.diagnostics, Format::Short, 160, false);
+fn value<T>(outcome: CompileOutcome<T>) -> T {
+    let said = render(&outcome.sources, &outcome.diagnostics, DiagnosticFormat::Short, 160, false);
     outcome.value.unwrap_or_else(|| panic!("{said}"))
 }
 
-fn signal(name: &str, variable: &str, scale: f64) -> Signal {
-    Signal { name: name.into(), variable: variable.into(), scale }
+fn signal(name: &str, variable: &str, scale: f64) -> SensorSignal {
+    SensorSignal { name: name.into(), variable: variable.into(), scale }
 }
 
 fn listed(all: &[Hypothesis]) -> String {
@@ -38,22 +38,22 @@ fn listed(all: &[Hypothesis]) -> String {
     all.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-fn check(world: &dyn World, request: &Request, signals: &[Signal]) -> String {
+fn check(world: &dyn World, request: &Request, signals: &[SensorSignal]) -> String {
     let effects = catalogue(world, None);
     assert!(effects.diagnostics.is_empty(), "{:?}", effects.diagnostics);
     let effects = effects.value.expect("a catalogue").effects;
-    assert!(effects.iter().any(|e| e.interface.attach == Attach::Shunt));
+    assert!(effects.iter().any(|e| e.interface.attach == AttachmentKind::Shunt));
     let places = value(circuit(world, request));
     let all = hypotheses(&places, &effects, signals, &[]);
     let mut attached = Vec::new();
     for (i, h) in all.iter().enumerate().filter(|(_, h)| !h.changes_order) {
         for (k, values) in h.variants().into_iter().enumerate() {
-            attached.push(Attached { name: format!("h{i}_{k}"), hypothesis: h, values });
+            attached.push(HypothesisInstance { name: format!("h{i}_{k}"), hypothesis: h, values });
         }
     }
     let text = augment(&places, &attached, signals);
-    let model = value(compile(world, request, None, &text, &lower::Options::default()));
-    let plain = value(bramah::internals::compile::compile(world, request, &lower::Options::default()));
+    let model = value(compile(world, request, None, &text, &lower::LoweringOptions::default()));
+    let plain = value(bramah::internals::compile::compile(world, request, &lower::LoweringOptions::default()));
     let states = |m: &bramah::internals::compile::CompiledModel, prefix: &str| -> Vec<String> {
         let names = m.dae.states.iter().map(|v| m.dae.variables[v.index()].name.clone());
         let mut names: Vec<String> = names.map(|n| n.strip_prefix(prefix).unwrap_or(&n).to_string()).collect();
@@ -71,16 +71,16 @@ fn check(world: &dyn World, request: &Request, signals: &[Signal]) -> String {
 }
 
 /// Effects that change the order of the system compile one by one, with typical sizes.
-fn alone(world: &dyn World, request: &Request, signals: &[Signal], places: &Circuit, all: &[Hypothesis]) {
+fn alone(world: &dyn World, request: &Request, signals: &[SensorSignal], places: &CircuitTopology, all: &[Hypothesis]) {
     let mut bad = Vec::new();
     for h in all.iter().filter(|h| h.changes_order) {
         let values = h.coefficients.iter().map(|c| (c.name.clone(), c.nominal)).collect();
-        let text = augment(places, &[Attached { name: "h".into(), hypothesis: h, values }], signals);
-        let outcome = compile(world, request, None, &text, &lower::Options::default());
+        let text = augment(places, &[HypothesisInstance { name: "h".into(), hypothesis: h, values }], signals);
+        let outcome = compile(world, request, None, &text, &lower::LoweringOptions::default());
         // Where the flow is an input, its derivative cannot be had.
         let of_input = outcome.diagnostics.iter().any(|d| d.code.id() == "E304");
         if outcome.value.is_none() && !of_input {
-            let said = render(&outcome.sources, &outcome.diagnostics, Format::Short, 160, false);
+            let said = render(&outcome.sources, &outcome.diagnostics, DiagnosticFormat::Short, 160, false);
             bad.push(format!("{} at {}\n{said}", h.effect, h.places()[0].place));
         }
     }
@@ -140,7 +140,7 @@ fn shipped_circuits() {
     insta::assert_snapshot!(said);
 }
 
-fn gap_axis_signals() -> [Signal; 5] {
+fn gap_axis_signals() -> [SensorSignal; 5] {
     [
         signal("w", "w", 100.0),
         signal("i", "i", 10.0),
@@ -171,7 +171,7 @@ fn difference(a: &Trajectory, b: &Trajectory, of: &str, in_b: &str) -> f64 {
     x.iter().zip(y).fold(0.0f64, |m, (v, w)| m.max((v - w).abs())) / range
 }
 
-fn axis() -> (Request, Circuit, Vec<Hypothesis>) {
+fn axis() -> (Request, CircuitTopology, Vec<Hypothesis>) {
     let request = Request { source: "GapAxis.Nominal".into(), ..Request::default() };
     let effects = catalogue(&MemoryWorld::default(), None).value.expect("a catalogue").effects;
     let places = value(circuit(&MemoryWorld::default(), &request));
@@ -187,8 +187,8 @@ fn off_is_nominal() {
     for (i, h) in all.iter().enumerate() {
         let values = Vec::new();
         // Elements that cut a connection change the structure even when they are off.
-        if !h.attachments.iter().any(|a| matches!(a.site, Site::Into(_))) {
-            attached.push(Attached { name: format!("h{i}"), hypothesis: h, values });
+        if !h.attachments.iter().any(|a| matches!(a.site, AttachmentSite::Into(_))) {
+            attached.push(HypothesisInstance { name: format!("h{i}"), hypothesis: h, values });
         }
     }
     let text = augment(&places, &attached, &gap_axis_signals()).text;
@@ -213,14 +213,15 @@ fn series_elements_add_up() {
     let effects = catalogue(&world, None).value.expect("a catalogue").effects;
     let places = value(circuit(&world, &request));
     let all = hypotheses(&places, &effects, &[], &[]);
-    let series: Vec<&Hypothesis> = all.iter().filter(|h| matches!(h.attachments[0].site, Site::Into(_))).collect();
+    let series: Vec<&Hypothesis> =
+        all.iter().filter(|h| matches!(h.attachments[0].site, AttachmentSite::Into(_))).collect();
     let lead = |h: &&&Hypothesis| h.effect == "Effects.SeriesResistance" && h.places()[0].place.contains("load.p");
     let first = series.iter().find(lead).expect("it fits");
     let same = |h: &&&Hypothesis| h.attachments[0].site == first.attachments[0].site && h.effect != first.effect;
     let second = series.iter().find(same).expect("another at the same port");
     let attached = [
-        Attached { name: "a".into(), hypothesis: first, values: vec![("R".into(), 2.0)] },
-        Attached { name: "b".into(), hypothesis: second, values: vec![] },
+        HypothesisInstance { name: "a".into(), hypothesis: first, values: vec![("R".into(), 2.0)] },
+        HypothesisInstance { name: "b".into(), hypothesis: second, values: vec![] },
     ];
     let signals = [signal("i", "load.i", 1.0)];
     let world = MemoryWorld::single("Augmented.mo", format!("{text}\n{}", augment(&places, &attached, &signals).text));
@@ -249,7 +250,7 @@ fn what_an_ideal_gear_drives_has_a_speed() {
     let request = Request { source: "Train.mo".into(), ..Request::default() };
     let places = value(circuit(&MemoryWorld::single("Train.mo", text), &request));
     let node = |name: &str| {
-        let of = |p: &bramah::internals::gap::circuit::Port| p.name == name;
+        let of = |p: &bramah::internals::gap::circuit::PhysicalPort| p.name == name;
         let port = places.ports.iter().find(|p| of(p)).expect("a port");
         &places.nodes[port.node]
     };
@@ -273,7 +274,7 @@ fn what_an_ideal_gear_drives_has_a_speed() {
 #[test]
 fn the_corrected_model_stands_alone() {
     let (request, places, all) = axis();
-    let free = Free { name: "M".into(), nominal: 120.0, sigma: 2.0 };
+    let free = UncertainParameter { name: "M".into(), nominal: 120.0, sigma: 2.0 };
     let drift = hypotheses(&places, &[], &[], &[free]).remove(0);
     let wanted = [
         ("Effects.InternalLeak", "G", 3e-12),
@@ -283,18 +284,18 @@ fn the_corrected_model_stands_alone() {
         ("Effects.LineInertance", "R", 5e9),
     ];
     let found = wanted.iter().map(|(e, ..)| all.iter().find(|h| h.effect == *e).expect("it fits"));
-    let mut attached: Vec<Attached<'_>> = wanted
+    let mut attached: Vec<HypothesisInstance<'_>> = wanted
         .iter()
         .zip(found)
         .enumerate()
-        .map(|(i, ((_, n, v), hypothesis))| Attached {
+        .map(|(i, ((_, n, v), hypothesis))| HypothesisInstance {
             name: format!("h{i}"),
             hypothesis,
             values: vec![(n.to_string(), *v)],
         })
         .collect();
     attached[4].values.push(("L".into(), 1e6));
-    attached.push(Attached { name: "m".into(), hypothesis: &drift, values: vec![("M".into(), 130.0)] });
+    attached.push(HypothesisInstance { name: "m".into(), hypothesis: &drift, values: vec![("M".into(), 130.0)] });
     let signals = gap_axis_signals();
     let nothing = MemoryWorld::default();
     let text = fixed(&nothing, &request, None, &places, &attached, &signals).value.expect("a text");
@@ -324,7 +325,8 @@ fn losses_lose() {
         "compression_loss",
         "valve_early_opening",
     ];
-    let losing = |e: &&std::sync::Arc<Effect>| families.contains(&e.family.as_str()) && !e.class.contains("Asymmetric");
+    let losing =
+        |e: &&std::sync::Arc<EffectModel>| families.contains(&e.family.as_str()) && !e.class.contains("Asymmetric");
     let mut text = String::from("model Losses\n");
     let mut equations = String::new();
     let mut names = Vec::new();
@@ -394,9 +396,9 @@ fn own_effects() {
     let places = value(circuit(&world, &request));
     let all = hypotheses(&places, &effects, &[], &[]);
     assert_eq!(listed(&all), "dry_friction Sticky at chamber_1.flange x2");
-    let attached = [Attached { name: "h".into(), hypothesis: &all[0], values: vec![] }];
+    let attached = [HypothesisInstance { name: "h".into(), hypothesis: &all[0], values: vec![] }];
     let text = augment(&places, &attached, &[]);
-    value(compile(&world, &request, Some(folder), &text, &lower::Options::default()));
+    value(compile(&world, &request, Some(folder), &text, &lower::LoweringOptions::default()));
 }
 
 /// What a connection or an equation of the model gives to a component may suffer what commands suffer; what only looks may
@@ -442,12 +444,13 @@ end Loop;
     let all = hypotheses(&places, &effects, &signals, &[]);
     let zone = |h: &&Hypothesis| h.effect == "Effects.CommandDeadZone" && h.places()[0].place == "axis.u";
     let values = vec![("k".to_string(), 1.0), ("d".to_string(), 0.5)];
-    let attached = [Attached { name: "e0".into(), hypothesis: all.iter().find(zone).expect("a place"), values }];
+    let attached =
+        [HypothesisInstance { name: "e0".into(), hypothesis: all.iter().find(zone).expect("a place"), values }];
     let file = fixed(&world, &request, None, &places, &attached, &signals).value.expect("a corrected model");
     assert!(!file.contains("connect(control.y, axis.u)"), "{file}");
     let alone = MemoryWorld::single("Fixed.mo", file);
     let request = Request { source: "Fixed.mo".into(), model: Some("Fixed".into()), ..Request::default() };
-    value(bramah::internals::compile::compile(&alone, &request, &lower::Options::default()));
+    value(bramah::internals::compile::compile(&alone, &request, &lower::LoweringOptions::default()));
 }
 
 /// A mistake in an effect of the user's own is shown in its file.
@@ -464,7 +467,7 @@ end Leak;
 ";
     let outcome = catalogue(&MemoryWorld::single("fx/Leak.mo", text), Some(Path::new("fx")));
     assert!(outcome.value.is_none());
-    let said = render(&outcome.sources, &outcome.diagnostics, Format::Short, 160, false);
+    let said = render(&outcome.sources, &outcome.diagnostics, DiagnosticFormat::Short, 160, false);
     assert!(said.starts_with("fx/Leak.mo:4:13: error[E010]"), "{said}");
 }
 

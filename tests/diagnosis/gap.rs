@@ -8,7 +8,7 @@ use bramah::Interpolation;
 use bramah::Sources;
 use bramah::internals::gap::estimate::simulation::from_start;
 use bramah::internals::gap::fixed::corrected;
-use bramah::internals::gap::plan::{Pair, plan};
+use bramah::internals::gap::plan::{EffectPair, plan};
 use bramah::internals::gap::report::report;
 use bramah::internals::gap::select::models;
 use bramah::internals::gap::select::search::{explained, search};
@@ -447,7 +447,7 @@ fn a_plan_says_what_would_be_seen_and_what_could_not_be_told_apart() {
     let of = |family: &str| plan.hypotheses.iter().position(|h| h.family == family).unwrap();
     assert!(plan.hypotheses[of("dry_friction")].nats > 8.0);
     let drift = |i: usize| plan.hypotheses[i].places == ["mass.m"];
-    let same = |p: &&Pair| plan.hypotheses[p.there].family == "extra_inertia" && drift(p.instead);
+    let same = |p: &&EffectPair| plan.hypotheses[p.there].family == "extra_inertia" && drift(p.instead);
     assert!(plan.confused.iter().find(same).unwrap().behind < 0.5);
     assert_eq!(plan.excitations.len(), 5);
     // at rest nothing that depends on motion shows

@@ -6,9 +6,9 @@
 #![allow(clippy::print_stdout, reason = "a test without its data says so")]
 
 use bramah::internals::diag::Sources;
-use bramah::internals::gap::data::Recording;
+use bramah::internals::gap::data::RecordingData;
 use bramah::internals::gap::estimate::simulation::from_start;
-use bramah::internals::gap::problem::Problem;
+use bramah::internals::gap::problem::DiagnosisProblem;
 use bramah::internals::gap::select::models;
 use bramah::internals::gap::study::question;
 use bramah::internals::study::Study;
@@ -21,7 +21,7 @@ const STEP: f64 = 0.01;
 const SEEN: f64 = 0.1;
 
 /// The largest distance of a slope from its difference, root of the mean square over a recording, as part of the difference.
-fn farthest(problem: &Problem<'_>) -> (f64, String) {
+fn farthest(problem: &DiagnosisProblem<'_>) -> (f64, String) {
     let mut model = models::nominal(problem).unwrap();
     let x = model.present();
     model.off = model.evaluate(&x, &problem.train).unwrap().off;
@@ -62,7 +62,7 @@ fn farthest(problem: &Problem<'_>) -> (f64, String) {
 const BORNE: f64 = 0.3;
 
 /// What a study asks; nothing where it is not there.
-fn with_problem(study: &str, test: impl Fn(&Problem<'_>)) {
+fn with_problem(study: &str, test: impl Fn(&DiagnosisProblem<'_>)) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(study);
     if !path.exists() {
         println!("skipped: no {}", path.display());
@@ -105,7 +105,7 @@ const COARSER: usize = 10;
 const SAME: f64 = 0.1;
 
 /// The inputs of a recording at times, straight between its samples.
-fn at_times(recording: &Recording, times: Vec<f64>) -> Recording {
+fn at_times(recording: &RecordingData, times: Vec<f64>) -> RecordingData {
     let between = |samples: &[f64]| {
         let one = |t: &f64| {
             let after = recording.times.partition_point(|x| x <= t).clamp(1, recording.len() - 1);
@@ -114,7 +114,7 @@ fn at_times(recording: &Recording, times: Vec<f64>) -> Recording {
         };
         times.iter().map(one).collect()
     };
-    Recording {
+    RecordingData {
         inputs: recording.inputs.iter().map(|i| between(i)).collect(),
         linear: vec![true; recording.inputs.len()],
         signals: recording.signals.iter().map(|_| vec![f64::NAN; times.len()].into()).collect(),
@@ -132,7 +132,8 @@ fn does_not_depend_on_sampling(study: &str) {
         let split =
             |w: &[f64]| (0..COARSER).map(|k| w[0] + (w[1] - w[0]) * k as f64 / COARSER as f64).collect::<Vec<_>>();
         let fine = at_times(&coarse, coarse.times.windows(2).flat_map(split).collect());
-        let run = |r: &Recording| from_start(&model.plan, &model.theta, (&model.sizes, model.correction), r).unwrap();
+        let run =
+            |r: &RecordingData| from_start(&model.plan, &model.theta, (&model.sizes, model.correction), r).unwrap();
         let (coarse, fine) = (run(&coarse), run(&fine));
         for (i, signal) in problem.signals.iter().enumerate() {
             let off: Vec<f64> = fine[i].iter().step_by(COARSER).zip(&coarse[i]).map(|(a, b)| (a - b).powi(2)).collect();

@@ -4,7 +4,7 @@
 use bramah::Request;
 use bramah::internals::compile::{CompiledModel, compile};
 use bramah::internals::lower;
-use bramah::internals::solve::{Checkpoint, Control, Input, Run, Settings, Sink, resume, simulate};
+use bramah::internals::solve::{Checkpoint, Control, RecordedInput, RowSink, RunResult, Settings, resume, simulate};
 use bramah::internals::structure::StateChoice;
 use bramah::world::MemoryWorld;
 use std::ops::ControlFlow;
@@ -18,7 +18,7 @@ struct Tape {
     checkpoints: Vec<(usize, String)>,
 }
 
-impl Sink for Tape {
+impl RowSink for Tape {
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
         self.rows.push(std::iter::once(time).chain(values.iter().copied()).map(f64::to_bits).collect());
         ControlFlow::Continue(())
@@ -32,7 +32,7 @@ impl Sink for Tape {
 
 fn model(text: &str) -> CompiledModel {
     let request = Request { source: "M.mo".into(), ..Request::default() };
-    let outcome = compile(&MemoryWorld::single("M.mo", text), &request, &lower::Options::default());
+    let outcome = compile(&MemoryWorld::single("M.mo", text), &request, &lower::LoweringOptions::default());
     outcome.value.unwrap_or_else(|| panic!("{:?}", outcome.diagnostics))
 }
 
@@ -42,7 +42,7 @@ fn settings(model: &CompiledModel, every: f64) -> Settings {
 }
 
 /// Runs whole, then again from every checkpoint, and compares.
-fn goes_on(text: &str, every: f64, inputs: &[Input]) -> (Run, Tape) {
+fn goes_on(text: &str, every: f64, inputs: &[RecordedInput]) -> (RunResult, Tape) {
     let model = model(text);
     let settings = settings(&model, every);
     let mut reselect = |choice: &StateChoice| model.with_states(choice);
@@ -166,7 +166,8 @@ fn recorded_inputs_and_loops() {
     let times: Vec<f64> = (0..40).map(|k| f64::from(k) * 0.05).collect();
     let values: Vec<f64> = times.iter().map(|t| (3.0 * t).sin()).collect();
     let input = |i: usize| compiled.dae.inputs[i];
-    let inputs = [Input::held(input(0), times.clone(), values.clone()), Input::linear(input(1), times, values)];
+    let inputs =
+        [RecordedInput::held(input(0), times.clone(), values.clone()), RecordedInput::linear(input(1), times, values)];
     // checkpoints upon samples, and between them
     for every in [0.25, 0.17] {
         goes_on(text, every, &inputs);

@@ -6,10 +6,10 @@
 
 use bramah::Diagnostic;
 use bramah::Request;
-use bramah::internals::compile::Outcome;
+use bramah::internals::compile::CompileOutcome;
 use bramah::internals::compile::compile;
 use bramah::internals::expr::VarId;
-use bramah::internals::lower::Options;
+use bramah::internals::lower::LoweringOptions;
 use bramah::internals::solve::{Control, Progress, Settings, signals, simulate};
 use bramah::results::Trajectory;
 use bramah::world::MemoryWorld;
@@ -150,7 +150,7 @@ fn go(text: &str) -> Vec<Diagnostic> {
     let world = MemoryWorld::single("model.mo", text);
     for model in [None, Some("M".to_string())] {
         let request = Request { source: "model.mo".into(), model, ..Request::default() };
-        let Outcome { mut diagnostics, value, .. } = compile(&world, &request, &Options::INTERPRETED);
+        let CompileOutcome { mut diagnostics, value, .. } = compile(&world, &request, &LoweringOptions::INTERPRETED);
         let Some(model) = value else {
             if diagnostics.iter().any(|d| d.code.id() == "E022") {
                 continue;

@@ -6,9 +6,11 @@
 use crate::disk;
 
 use bramah::Sources;
-use bramah::internals::analysis::identify::{Identification, Method, Problem, Report};
-use bramah::internals::diag::render::{Format, render};
-use bramah::internals::study::{Bound, Recording, Role, Study};
+use bramah::internals::analysis::identify::{
+    Identification, IdentificationProblem, IdentificationReport, IdentifyMethod,
+};
+use bramah::internals::diag::render::{DiagnosticFormat, render};
+use bramah::internals::study::{BoundStudy, Recording, RecordingRole, Study};
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 use disk::Disk;
@@ -26,11 +28,11 @@ fn shipped(class: &str) -> Simulation {
 fn study(file: &str) -> Study {
     let mut sources = Sources::default();
     let read = Study::read(&Disk, &models().join(file), &mut sources);
-    read.value.unwrap_or_else(|| panic!("{}", render(&sources, &read.diagnostics, Format::Short, 120, false)))
+    read.value.unwrap_or_else(|| panic!("{}", render(&sources, &read.diagnostics, DiagnosticFormat::Short, 120, false)))
 }
 
 /// A study tied to its class, or to another one with the same signals.
-fn tied(study: &Study, class: Option<&str>) -> (Bound, Simulation) {
+fn tied(study: &Study, class: Option<&str>) -> (BoundStudy, Simulation) {
     let simulation = shipped(class.or(study.class.as_deref()).expect("a class"));
     let tied = study.bind(&simulation.model().flat);
     let said: Vec<&str> = tied.diagnostics.iter().map(|d| d.message.as_str()).collect();
@@ -39,7 +41,7 @@ fn tied(study: &Study, class: Option<&str>) -> (Bound, Simulation) {
 }
 
 /// The recordings of one role, or nothing where the data of the bench are not at hand.
-fn recordings(bound: &Bound, folder: &str, role: Role) -> Option<Vec<Recording>> {
+fn recordings(bound: &BoundStudy, folder: &str, role: RecordingRole) -> Option<Vec<Recording>> {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared").join(folder);
     if !data.is_dir() {
         println!("skipped: no folder ../shared/{folder}");
@@ -47,12 +49,12 @@ fn recordings(bound: &Bound, folder: &str, role: Role) -> Option<Vec<Recording>>
     }
     let mut sources = Sources::default();
     let loaded = bound.load(&Disk, Some(&data), role, &mut sources);
-    let said = render(&sources, &loaded.diagnostics, Format::Short, 120, false);
+    let said = render(&sources, &loaded.diagnostics, DiagnosticFormat::Short, 120, false);
     Some(loaded.value.unwrap_or_else(|| panic!("{said}")))
 }
 
 /// Root mean square of measured minus simulated, a number for each signal; and that of the measured signal itself.
-fn errors(simulation: &mut Simulation, bound: &Bound, recording: &Recording) -> Vec<(f64, f64)> {
+fn errors(simulation: &mut Simulation, bound: &BoundStudy, recording: &Recording) -> Vec<(f64, f64)> {
     let times = &recording.times;
     for (input, values) in bound.inputs.iter().zip(&recording.inputs) {
         simulation.input(&input.name, times, values, input.interpolation).expect("an input");
@@ -96,7 +98,7 @@ fn every_study_ties_to_its_model() {
 fn the_tanks_follow_the_validation_record() {
     for (class, wanted) in [("CascadedTanks.Nominal", 0.67), ("CascadedTanks.Complete", 0.194)] {
         let (bound, mut simulation) = tied(&study("CascadedTanks/gap.toml"), Some(class));
-        let Some(held) = recordings(&bound, "data/cascaded_tanks", Role::Held) else { return };
+        let Some(held) = recordings(&bound, "data/cascaded_tanks", RecordingRole::Held) else { return };
         let (error, _) = errors(&mut simulation, &bound, &held[0])[0];
         assert!((error - wanted).abs() < 0.01, "{class}: {error} V");
     }
@@ -107,7 +109,7 @@ fn the_tanks_follow_the_validation_record() {
 fn the_axis_follows_force_and_position() {
     for (class, share) in [("Emps.Nominal", 0.38), ("Emps.Complete", 0.06)] {
         let (bound, mut simulation) = tied(&study("Emps/gap.toml"), Some(class));
-        let Some(train) = recordings(&bound, "data/emps", Role::Train) else { return };
+        let Some(train) = recordings(&bound, "data/emps", RecordingRole::Train) else { return };
         let found = errors(&mut simulation, &bound, &train[0]);
         assert!(found[0].0 < 2e-5, "position: {} m", found[0].0);
         assert!((found[1].0 / found[1].1 - share).abs() < 0.02, "{class}: force {:?}", found[1]);
@@ -123,7 +125,7 @@ fn the_sampled_loop_follows_the_force() {
     in_loop.parameters.clear();
     for (dry, share) in [(20.3935, 0.046), (0.0, 0.38)] {
         let (bound, mut simulation) = tied(&in_loop, None);
-        let Some(train) = recordings(&bound, "data/emps", Role::Train) else { return };
+        let Some(train) = recordings(&bound, "data/emps", RecordingRole::Train) else { return };
         for (name, value) in [("F_c", dry), ("q_start", 7.45e-6), ("v_start", 5.65e-3)] {
             simulation.set(name, value).expect("a parameter");
         }
@@ -136,7 +138,7 @@ fn the_sampled_loop_follows_the_force() {
 fn the_drives_follow_the_held_record_with_the_rectifying_pick_up() {
     for (class, wanted) in [("CoupledDrives.Nominal", 2.5), ("CoupledDrives.Complete", 0.5)] {
         let (bound, mut simulation) = tied(&study("CoupledDrives/gap.toml"), Some(class));
-        let Some(held) = recordings(&bound, "data/ced_coupled_drives", Role::Held) else { return };
+        let Some(held) = recordings(&bound, "data/ced_coupled_drives", RecordingRole::Held) else { return };
         let (error, _) = errors(&mut simulation, &bound, &held[0])[0];
         assert!((error - wanted).abs() < 0.1, "{class}: {error} V");
     }
@@ -150,7 +152,7 @@ fn the_axis_of_the_gap_bench_reproduces_its_nominal_plant() {
         nominal.recordings.truncate(1);
         nominal.recordings[0].file = file.into();
         let (bound, mut simulation) = tied(&nominal, None);
-        let Some(train) = recordings(&bound, "gapbench/nominal", Role::Train) else { return };
+        let Some(train) = recordings(&bound, "gapbench/nominal", RecordingRole::Train) else { return };
         for (signal, (error, size)) in bound.signals.iter().zip(errors(&mut simulation, &bound, &train[0])) {
             assert!(error < 1e-4 * size, "{file}: {} by {}", signal.name, error / size);
         }
@@ -158,15 +160,16 @@ fn the_axis_of_the_gap_bench_reproduces_its_nominal_plant() {
 }
 
 /// What `bramah identify` finds with a study: values by parameter, and errors by signal on the held recordings.
-fn identified(file: &str, folder: &str) -> Option<Report> {
+fn identified(file: &str, folder: &str) -> Option<IdentificationReport> {
     let (bound, simulation) = tied(&study(file), None);
-    let train = recordings(&bound, folder, Role::Train)?;
-    let problem = Problem::new(simulation.model(), &bound, &train).expect("a sound question");
-    let found = Identification::new(&problem, &train, Method::Auto).expect("runs");
+    let train = recordings(&bound, folder, RecordingRole::Train)?;
+    let problem = IdentificationProblem::new(simulation.model(), &bound, &train).expect("a sound question");
+    let found = Identification::new(&problem, &train, IdentifyMethod::Auto).expect("runs");
     let fit = found.fit().expect("runs");
-    let held = if bound.has(Role::Held) { recordings(&bound, folder, Role::Held)? } else { Vec::new() };
+    let held =
+        if bound.has(RecordingRole::Held) { recordings(&bound, folder, RecordingRole::Held)? } else { Vec::new() };
     let held = if held.is_empty() { Vec::new() } else { found.judge_held(&fit, &held).expect("runs") };
-    Some(Report::new(&problem, &found, &fit, &held, &[]))
+    Some(IdentificationReport::new(&problem, &found, &fit, &held, &[]))
 }
 
 /// The published values, within what the publication and ours differ in filtering.

@@ -6,8 +6,8 @@ use crate::disk;
 
 use bramah::Request;
 use bramah::internals::compile::{flatten, flatten_text};
-use bramah::internals::diag::render::{Format, render};
-use bramah::internals::resolve::{Library, Trees, nested_classes};
+use bramah::internals::diag::render::{DiagnosticFormat, render};
+use bramah::internals::resolve::{Library, SyntaxArena, nested_classes};
 use bramah::internals::syntax::ast::ClassKind;
 use bramah::world::World;
 use disk::Disk;
@@ -38,7 +38,7 @@ fn remarks(request: &Request) -> String {
         diagnostics.extend(bramah::internals::unit_check::check(&value.flat));
         bramah::internals::structure::analyze(&value.flat, &Default::default()).sink(&mut diagnostics);
     }
-    render(&outcome.sources, &diagnostics, Format::Short, 200, false)
+    render(&outcome.sources, &diagnostics, DiagnosticFormat::Short, 200, false)
 }
 
 #[test]
@@ -133,9 +133,9 @@ fn every_component_has_a_header() {
 /// What a reader of the library may expect of every component: a description and, of its parameters, units or bounds.
 #[test]
 fn classes_are_described() {
-    let trees = Trees::new();
-    let shipped = bramah::internals::shipped::Shipped;
-    let roots = bramah::internals::shipped::Shipped::roots().map(|r| (&shipped as &dyn World, r)).to_vec();
+    let trees = SyntaxArena::new();
+    let shipped = bramah::internals::shipped::ShippedWorld;
+    let roots = bramah::internals::shipped::ShippedWorld::roots().map(|r| (&shipped as &dyn World, r)).to_vec();
     let mut library = Library::new(&trees, roots);
     let mut silent = Vec::new();
     for package in

@@ -1,7 +1,7 @@
 //! Tables that models read from files: the same as tables written in the model, and mistakes reported at their place.
 
 use bramah::internals::compile::compile;
-use bramah::internals::diag::render::{Format, render};
+use bramah::internals::diag::render::{DiagnosticFormat, render};
 use bramah::world::MemoryWorld;
 use bramah::{Request, Simulation};
 
@@ -15,8 +15,8 @@ fn said(block: &str, data: &str) -> String {
     let mut world = MemoryWorld::single("bench/M.mo", model(block));
     world.add("bench/t.csv", data);
     let request = Request { source: "bench/M.mo".into(), ..Request::default() };
-    let outcome = compile(&world, &request, &bramah::internals::lower::Options::INTERPRETED);
-    render(&outcome.sources, &outcome.diagnostics, Format::Short, 200, false)
+    let outcome = compile(&world, &request, &bramah::internals::lower::LoweringOptions::INTERPRETED);
+    render(&outcome.sources, &outcome.diagnostics, DiagnosticFormat::Short, 200, false)
 }
 
 const CURVE: &str = "Signal.Table1D t(u = time, fileName = \"t.csv\");";

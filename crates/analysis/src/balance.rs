@@ -1,27 +1,27 @@
 //! Where the power goes: what flows into each component through its ports, and from component to component.
 
 use bramah_expr::VarId;
-use bramah_expr::units::{Dimension, Unit};
+use bramah_expr::units::{Dimension, MeasurementUnit};
 use bramah_model::flat::FlatModel;
-use bramah_model::network::Graph;
+use bramah_model::network::ComponentGraph;
 use bramah_results::Trajectory;
 use std::collections::BTreeMap;
 
 /// A port of a top-level component that carries power.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Port {
+pub struct PowerPort {
     /// The component.
     pub component: String,
     /// The port, relative to it.
     pub name: String,
     /// Flow variable, positive into the component.
     flow: VarId,
-    partner: Partner,
+    partner: ConjugateVariable,
 }
 
 /// What the flow is multiplied with.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Partner {
+enum ConjugateVariable {
     /// Nothing: the flow is power itself, as heat is.
     Own,
     /// A potential, as pressure, voltage or speed.
@@ -34,7 +34,7 @@ const POWER: Dimension = Dimension::new([1, 2, -3, 0, 0, 0, 0]);
 const ENERGY: Dimension = Dimension::new([1, 2, -2, 0, 0, 0, 0]);
 
 /// The ports of the model's top-level components, recognised by the units of their variables.
-pub fn ports(flat: &FlatModel) -> Vec<Port> {
+pub fn ports(flat: &FlatModel) -> Vec<PowerPort> {
     let ids = || (0..).map(VarId).zip(&flat.variables);
     let mut found = Vec::new();
     for (flow, variable) in ids().filter(|(_, v)| v.flow) {
@@ -51,29 +51,29 @@ pub fn ports(flat: &FlatModel) -> Vec<Port> {
             siblings.filter_map(|(v, s)| Some((v, dimension(s.unit.as_deref()?)?))).collect();
         let partner = variable.unit.as_deref().and_then(dimension).and_then(|d| partner(d, &siblings));
         if let Some(partner) = partner {
-            found.push(Port { component: component.to_owned(), name: port.to_owned(), flow, partner });
+            found.push(PowerPort { component: component.to_owned(), name: port.to_owned(), flow, partner });
         }
     }
     found
 }
 
 fn dimension(unit: &str) -> Option<Dimension> {
-    Unit::parse(unit).ok().map(|u| u.dimension)
+    MeasurementUnit::parse(unit).ok().map(|u| u.dimension)
 }
 
-fn partner(flow: Dimension, siblings: &[(VarId, Dimension)]) -> Option<Partner> {
+fn partner(flow: Dimension, siblings: &[(VarId, Dimension)]) -> Option<ConjugateVariable> {
     if flow == POWER {
-        return Some(Partner::Own);
+        return Some(ConjugateVariable::Own);
     }
     let times = |wanted: Dimension| siblings.iter().find(|s| s.1.times(flow) == Some(wanted)).map(|s| s.0);
-    times(POWER).map(Partner::Potential).or_else(|| times(ENERGY).map(Partner::Rate))
+    times(POWER).map(ConjugateVariable::Potential).or_else(|| times(ENERGY).map(ConjugateVariable::Rate))
 }
 
 /// The variables to record for [`powers`].
-pub fn wanted(ports: &[Port]) -> Vec<VarId> {
-    let of = |p: &Port| match p.partner {
-        Partner::Own => vec![p.flow],
-        Partner::Potential(v) | Partner::Rate(v) => vec![p.flow, v],
+pub fn wanted(ports: &[PowerPort]) -> Vec<VarId> {
+    let of = |p: &PowerPort| match p.partner {
+        ConjugateVariable::Own => vec![p.flow],
+        ConjugateVariable::Potential(v) | ConjugateVariable::Rate(v) => vec![p.flow, v],
     };
     let mut all: Vec<VarId> = ports.iter().flat_map(of).collect();
     all.sort();
@@ -82,20 +82,20 @@ pub fn wanted(ports: &[Port]) -> Vec<VarId> {
 }
 
 /// The mean power into each port over a run in W. `rows` holds the columns of [`wanted`] first.
-pub fn powers(ports: &[Port], rows: &Trajectory) -> Vec<f64> {
+pub fn powers(ports: &[PowerPort], rows: &Trajectory) -> Vec<f64> {
     let wanted = wanted(ports);
     let column = |v: VarId| wanted.binary_search(&v).ok().map_or(&[] as &[f64], |k| rows.columns[k].as_slice());
     let duration = rows.times.last().zip(rows.times.first()).map_or(0.0, |(a, b)| a - b);
-    let one = |p: &Port| {
+    let one = |p: &PowerPort| {
         let flow = column(p.flow);
         let steps = rows.times.windows(2).enumerate();
         let energy: f64 = match p.partner {
-            Partner::Own => steps.map(|(k, t)| 0.5 * (flow[k] + flow[k + 1]) * (t[1] - t[0])).sum(),
-            Partner::Potential(v) => {
+            ConjugateVariable::Own => steps.map(|(k, t)| 0.5 * (flow[k] + flow[k + 1]) * (t[1] - t[0])).sum(),
+            ConjugateVariable::Potential(v) => {
                 let p = column(v);
                 steps.map(|(k, t)| 0.5 * (p[k] * flow[k] + p[k + 1] * flow[k + 1]) * (t[1] - t[0])).sum()
             }
-            Partner::Rate(v) => {
+            ConjugateVariable::Rate(v) => {
                 let s = column(v);
                 // an event has no width, and a position does not jump but by `reinit`
                 let moves = steps.filter(|(_, t)| t[1] > t[0]);
@@ -109,7 +109,7 @@ pub fn powers(ports: &[Port], rows: &Trajectory) -> Vec<f64> {
 
 /// A component with what flows in through its ports.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Budget {
+pub struct PowerBalance {
     /// Its name.
     pub component: String,
     /// Its class; empty where it has no connection.
@@ -121,11 +121,11 @@ pub struct Budget {
 }
 
 /// All components, those that take most first.
-pub fn budgets(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Budget> {
-    let mut by: BTreeMap<&str, Budget> = BTreeMap::new();
+pub fn budgets(ports: &[PowerPort], powers: &[f64], graph: &ComponentGraph) -> Vec<PowerBalance> {
+    let mut by: BTreeMap<&str, PowerBalance> = BTreeMap::new();
     for (port, &power) in ports.iter().zip(powers) {
         let class = graph.node_weights().find(|n| n.name == port.component).map_or("", |n| n.class.as_str());
-        let budget = by.entry(&port.component).or_insert_with(|| Budget {
+        let budget = by.entry(&port.component).or_insert_with(|| PowerBalance {
             component: port.component.clone(),
             class: class.to_owned(),
             ports: Vec::new(),
@@ -134,14 +134,14 @@ pub fn budgets(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Budget> {
         budget.ports.push((port.name.clone(), power));
         budget.net += power;
     }
-    let mut all: Vec<Budget> = by.into_values().collect();
+    let mut all: Vec<PowerBalance> = by.into_values().collect();
     all.sort_by(|a, b| b.net.total_cmp(&a.net));
     all
 }
 
 /// Power from one component to another.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stream {
+pub struct PowerFlow {
     /// Where it comes from.
     pub from: String,
     /// Where it goes.
@@ -152,7 +152,7 @@ pub struct Stream {
 
 /// Streams through the connections. Where more than two ports meet, each that takes is fed by all that give, in
 /// proportion.
-pub fn streams(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Stream> {
+pub fn streams(ports: &[PowerPort], powers: &[f64], graph: &ComponentGraph) -> Vec<PowerFlow> {
     let mut streams: BTreeMap<(String, String), f64> = BTreeMap::new();
     for set in meetings(ports, graph) {
         let given: f64 = set.iter().map(|&p| (-powers[p]).max(0.0)).sum();
@@ -164,18 +164,18 @@ pub fn streams(ports: &[Port], powers: &[f64], graph: &Graph) -> Vec<Stream> {
         }
     }
     let all = streams.into_iter().filter(|(ends, _)| ends.0 != ends.1);
-    all.map(|((from, to), power)| Stream { from, to, power }).collect()
+    all.map(|((from, to), power)| PowerFlow { from, to, power }).collect()
 }
 
 /// What components that pass power on keep of it: their losses, and what they store, as streams to `name`. Losses have no
 /// port where they are not led away as heat, so no connection shows them. Where power only ends nothing is left over.
-pub fn left(budgets: &[Budget], name: &str) -> Vec<Stream> {
+pub fn left(budgets: &[PowerBalance], name: &str) -> Vec<PowerFlow> {
     let passing = budgets.iter().filter(|b| b.net > 0.0 && b.ports.iter().any(|p| p.1 < 0.0));
-    passing.map(|b| Stream { from: b.component.clone(), to: name.to_owned(), power: b.net }).collect()
+    passing.map(|b| PowerFlow { from: b.component.clone(), to: name.to_owned(), power: b.net }).collect()
 }
 
 /// Groups of connected ports, by index.
-fn meetings(ports: &[Port], graph: &Graph) -> Vec<Vec<usize>> {
+fn meetings(ports: &[PowerPort], graph: &ComponentGraph) -> Vec<Vec<usize>> {
     let mut group: Vec<usize> = (0..ports.len()).collect();
     let find = |component: &str, name: &str| ports.iter().position(|p| p.component == component && p.name == name);
     for edge in graph.edge_indices() {
@@ -246,7 +246,7 @@ mod tests {
         let budgets = budgets(&ports, &powers, &model.graph);
         let mut all = streams(&ports, &powers, &model.graph);
         all.extend(left(&budgets, "lost"));
-        let of_pump = |s: &&Stream| s.from == "pump" || s.to == "pump";
+        let of_pump = |s: &&PowerFlow| s.from == "pump" || s.to == "pump";
         let net: f64 = all.iter().filter(of_pump).map(|s| if s.to == "pump" { s.power } else { -s.power }).sum();
         let lost = all.iter().find(|s| s.from == "pump" && s.to == "lost").expect("a stream").power;
         let said = rows.columns.last().and_then(|c| c.last()).copied().expect("rows");

@@ -1,6 +1,6 @@
 //! Lists of values as people write them: `1,2,5`, `200:1000:5` (from, to, how many), with a unit at the end for all.
 
-use bramah_expr::units::{Unit, quantity};
+use bramah_expr::units::{MeasurementUnit, quantity};
 
 /// Reads values in `unit`, the unit of the quantity; empty for none.
 ///
@@ -19,8 +19,8 @@ pub fn values(text: &str, unit: &str) -> Result<Vec<f64>, String> {
     if own.is_empty() {
         return Ok(out);
     }
-    let from = Unit::parse(own).map_err(|e| e.to_string())?;
-    let to = Unit::parse(unit).map_err(|e| e.to_string())?;
+    let from = MeasurementUnit::parse(own).map_err(|e| e.to_string())?;
+    let to = MeasurementUnit::parse(unit).map_err(|e| e.to_string())?;
     let convert = |v: f64| from.convert(v, &to).ok_or_else(|| format!("`{own}` cannot be converted to `{unit}`"));
     out.into_iter().map(convert).collect()
 }

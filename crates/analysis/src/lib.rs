@@ -18,7 +18,7 @@ pub mod steady;
 pub mod sweep;
 pub mod tangent;
 
-pub use lift::{Lifted, lift};
-pub use local::{Local, LocalError};
+pub use lift::{StateAugmentedModel, lift};
+pub use local::{LocalError, LocalEvaluator};
 pub use simulation::Analyze;
-pub use tangent::Tangent;
+pub use tangent::TangentModel;

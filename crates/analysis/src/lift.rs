@@ -4,26 +4,27 @@
 use bramah_expr::visit::Substitution;
 use bramah_expr::{ExprId, Exprs, VarId};
 use bramah_model::flat::{
-    Equation, FlatModel, Origin, OriginKind, StateSelect, Type, Variability, Variable, When, WhenAction,
+    ElementOrigin, FlatEquation, FlatModel, FlatVariable, OriginKind, ScalarType, StateSelect, Variability, WhenAction,
+    WhenClause,
 };
 
 /// A flat model whose chosen parameters and inputs are states with derivative 0, and whose outputs are the derivatives
 /// of further states.
 #[derive(Clone, Debug)]
-pub struct Lifted {
+pub struct StateAugmentedModel {
     /// The model.
     pub flat: FlatModel,
     /// For each chosen parameter, in the order asked for.
-    pub parameters: Vec<Raised>,
+    pub parameters: Vec<AugmentedState>,
     /// For each top-level input, in declaration order.
-    pub inputs: Vec<Raised>,
+    pub inputs: Vec<AugmentedState>,
     /// For each output asked for: the state whose derivative it is.
     pub outputs: Vec<VarId>,
 }
 
 /// A quantity that became a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Raised {
+pub struct AugmentedState {
     /// The state.
     pub state: VarId,
     /// The parameter that holds its value at the start.
@@ -32,38 +33,38 @@ pub struct Raised {
 
 /// Lifts `parameters`, all inputs and `outputs`. Parameters that depend on lifted ones become expressions of them;
 /// attributes (`start`, `nominal`, bounds) keep reading the parameters' values at the start.
-pub fn lift(flat: &FlatModel, parameters: &[VarId], outputs: &[VarId]) -> Lifted {
-    let mut lift = Lift::new(flat.clone());
-    let raised: Vec<Raised> = parameters.iter().map(|&p| lift.parameter(p)).collect();
+pub fn lift(flat: &FlatModel, parameters: &[VarId], outputs: &[VarId]) -> StateAugmentedModel {
+    let mut lift = StateAugmentation::new(flat.clone());
+    let raised: Vec<AugmentedState> = parameters.iter().map(|&p| lift.parameter(p)).collect();
     lift.dependents(parameters);
     lift.substitute();
     let inputs = (0..).map(VarId).zip(&flat.variables).filter(|(_, v)| v.input).map(|(v, _)| v);
-    let inputs: Vec<Raised> = inputs.map(|u| lift.input(u)).collect();
+    let inputs: Vec<AugmentedState> = inputs.map(|u| lift.input(u)).collect();
     let outputs = outputs.iter().map(|&y| lift.output(y)).collect();
-    Lifted { flat: lift.flat, parameters: raised, inputs, outputs }
+    StateAugmentedModel { flat: lift.flat, parameters: raised, inputs, outputs }
 }
 
 /// Lifts parameters alone: inputs stay inputs.
-pub fn free(flat: &FlatModel, parameters: &[VarId]) -> Lifted {
-    let mut lift = Lift::new(flat.clone());
-    let parameters: Vec<Raised> = parameters.iter().map(|&p| lift.parameter(p)).collect();
+pub fn free(flat: &FlatModel, parameters: &[VarId]) -> StateAugmentedModel {
+    let mut lift = StateAugmentation::new(flat.clone());
+    let parameters: Vec<AugmentedState> = parameters.iter().map(|&p| lift.parameter(p)).collect();
     let originals: Vec<VarId> = parameters.iter().map(|r| r.start).collect();
     lift.dependents(&originals);
     lift.substitute();
-    Lifted { flat: lift.flat, parameters, inputs: Vec::new(), outputs: Vec::new() }
+    StateAugmentedModel { flat: lift.flat, parameters, inputs: Vec::new(), outputs: Vec::new() }
 }
 
-struct Lift {
+struct StateAugmentation {
     flat: FlatModel,
     replacements: Vec<(ExprId, ExprId)>,
 }
 
-impl Lift {
+impl StateAugmentation {
     fn new(flat: FlatModel) -> Self {
-        Lift { flat, replacements: Vec::new() }
+        StateAugmentation { flat, replacements: Vec::new() }
     }
 
-    fn add(&mut self, variable: Variable) -> VarId {
+    fn add(&mut self, variable: FlatVariable) -> VarId {
         let v = VarId(u32::try_from(self.flat.variables.len()).expect("fewer than 2^32 variables"));
         self.flat.variables.push(variable);
         v
@@ -72,8 +73,8 @@ impl Lift {
     /// A hidden variable like `of` under another name.
     fn beside(&mut self, of: VarId, name: String, variability: Variability) -> VarId {
         let model = &self.flat.variables[of.index()];
-        let origin = Origin { kind: OriginKind::Made, ..model.origin };
-        let variable = Variable {
+        let origin = ElementOrigin { kind: OriginKind::Made, ..model.origin };
+        let variable = FlatVariable {
             hidden: true,
             unwanted: true,
             fixed: variability <= Variability::Parameter,
@@ -81,14 +82,14 @@ impl Lift {
             unit: model.unit.clone(),
             display_unit: model.display_unit.clone(),
             description: model.description.clone(),
-            ..Variable::plain(name, Type::Real, variability, origin)
+            ..FlatVariable::plain(name, ScalarType::Real, variability, origin)
         };
         self.add(variable)
     }
 
     fn equation(&mut self, lhs: ExprId, rhs: ExprId, of: VarId) {
-        let origin = Origin { kind: OriginKind::Made, ..self.flat.variables[of.index()].origin };
-        self.flat.equations.push(Equation { lhs, rhs, origin });
+        let origin = ElementOrigin { kind: OriginKind::Made, ..self.flat.variables[of.index()].origin };
+        self.flat.equations.push(FlatEquation { lhs, rhs, origin });
     }
 
     /// `der(state) = 0` from the value of `start`.
@@ -102,12 +103,12 @@ impl Lift {
         self.equation(der, Exprs::ZERO, state);
     }
 
-    fn parameter(&mut self, p: VarId) -> Raised {
+    fn parameter(&mut self, p: VarId) -> AugmentedState {
         let name = format!("{} (free)", self.flat.variables[p.index()].name);
         let state = self.beside(p, name, Variability::Continuous);
         self.stand_still(state, p);
         self.replace(p, state);
-        Raised { state, start: p }
+        AugmentedState { state, start: p }
     }
 
     fn replace(&mut self, old: VarId, new: VarId) {
@@ -150,7 +151,7 @@ impl Lift {
         whens.iter_mut().for_each(|w| change_when(w, &mut change));
     }
 
-    fn input(&mut self, u: VarId) -> Raised {
+    fn input(&mut self, u: VarId) -> AugmentedState {
         let variable = &self.flat.variables[u.index()];
         let binding = variable.binding.or(variable.start);
         let name = format!("{} (start)", variable.name);
@@ -161,7 +162,7 @@ impl Lift {
         variable.binding = None;
         variable.variability = Variability::Continuous;
         self.stand_still(u, start);
-        Raised { state: u, start }
+        AugmentedState { state: u, start }
     }
 
     fn output(&mut self, y: VarId) -> VarId {
@@ -186,7 +187,7 @@ pub(super) fn reading(flat: &FlatModel, lifted: &[VarId]) -> Vec<(VarId, ExprId)
     loop {
         let before = found.len();
         for (v, variable) in (0..).map(VarId).zip(&flat.variables) {
-            let real = variable.variability == Variability::Parameter && variable.ty == Type::Real;
+            let real = variable.variability == Variability::Parameter && variable.ty == ScalarType::Real;
             let Some(binding) = variable.binding.filter(|_| real && !moved[v.index()]) else { continue };
             if flat.exprs.variables(binding).iter().any(|w| moved[w.index()]) {
                 moved[v.index()] = true;
@@ -199,7 +200,7 @@ pub(super) fn reading(flat: &FlatModel, lifted: &[VarId]) -> Vec<(VarId, ExprId)
     }
 }
 
-fn change_when(when: &mut When, change: &mut impl FnMut(&mut ExprId)) {
+fn change_when(when: &mut WhenClause, change: &mut impl FnMut(&mut ExprId)) {
     for branch in &mut when.branches {
         branch.conditions.iter_mut().for_each(&mut *change);
         for action in &mut branch.actions {

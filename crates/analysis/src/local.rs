@@ -8,11 +8,11 @@ mod plan;
 mod tests;
 
 use bramah_expr::VarId;
-use bramah_solve::Point;
+use bramah_solve::ConsistentPoint;
 use bramah_syntax::diag::Diagnostic;
 pub use derivatives::Linearization;
 use nalgebra::{DMatrix, DVector};
-pub use plan::Plan;
+pub use plan::EvaluationPlan;
 use std::sync::Arc;
 
 /// A rate that reads others changes by more than this part of it when they do.
@@ -40,9 +40,9 @@ impl From<Box<Diagnostic>> for LocalError {
 
 /// A model that is evaluated point by point; one for each thread.
 #[derive(Debug)]
-pub struct Local {
-    plan: Arc<Plan>,
-    point: Point,
+pub struct LocalEvaluator {
+    plan: Arc<EvaluationPlan>,
+    point: ConsistentPoint,
     y: Vec<f64>,
     yp: Vec<f64>,
     residual: Vec<f64>,
@@ -62,14 +62,14 @@ pub struct Local {
     pub linear: Linearization,
 }
 
-impl Local {
+impl LocalEvaluator {
     /// At the start of the model, with these parameters and inputs.
     ///
     /// # Errors
     /// When the initial system has no solution.
-    pub fn start(plan: Arc<Plan>, time: f64, theta: &[f64], u: &[f64]) -> Result<Self, LocalError> {
+    pub fn start(plan: Arc<EvaluationPlan>, time: f64, theta: &[f64], u: &[f64]) -> Result<Self, LocalError> {
         let given = plan.raised.iter().zip(theta.iter().chain(u)).map(|(p, v)| (p.start, *v)).collect();
-        let point = Point::start(plan.system.clone(), time, given)?;
+        let point = ConsistentPoint::start(plan.system.clone(), time, given)?;
         let (n, p, r) = (plan.states.len(), plan.outputs.len(), plan.raised.len());
         let columns = plan.system.columns.len();
         let entries = plan.system.pattern.nnz();
@@ -79,7 +79,7 @@ impl Local {
             c: DMatrix::zeros(p, n),
             d: DMatrix::zeros(p, r),
         };
-        let mut local = Local {
+        let mut local = LocalEvaluator {
             point,
             y: vec![0.0; columns],
             yp: vec![0.0; columns],
@@ -100,7 +100,7 @@ impl Local {
 
     /// Whether explicit rows change with the rates put into them; there is no value at the start where this cannot be told.
     fn looks_for_read_rates(&mut self, time: f64) -> bool {
-        let Local { plan, point, y, yp, residual, .. } = self;
+        let LocalEvaluator { plan, point, y, yp, residual, .. } = self;
         let system = &plan.system;
         for (j, c) in system.columns.iter().enumerate() {
             y[j] = point.values[system.layout.var(c.variable)];
@@ -117,7 +117,7 @@ impl Local {
     }
 
     /// What is evaluated.
-    pub fn plan(&self) -> &Arc<Plan> {
+    pub fn plan(&self) -> &Arc<EvaluationPlan> {
         &self.plan
     }
 
@@ -153,7 +153,7 @@ impl Local {
     }
 
     fn values(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
-        let Local { plan, point, y, yp, residual, entries, torn_entries, reads_rates, .. } = self;
+        let LocalEvaluator { plan, point, y, yp, residual, entries, torn_entries, reads_rates, .. } = self;
         let system = &plan.system;
         for (&(column, _), &value) in plan.states.iter().zip(x) {
             y[column] = value;

@@ -3,36 +3,37 @@
 //! In the load zone the flow is a straight line over the speed. It ends below where the pump just covers its leakage, above
 //! where the flow follows the speed no longer. Source: Zhang et al., Processes 2021, 9, 814, section 2 and Fig. 2.
 
-use super::Local;
-use super::linear::Chosen;
-use super::steady::{Point, Unsteady, reach};
+use super::LocalEvaluator;
+use super::linear::LinearizationSetup;
+use super::steady::{OperatingPoint, SteadyStateError, reach};
 use bramah_expr::VarId;
 
 /// No operating point was found at a speed.
 #[derive(Clone, Debug)]
-pub struct Missed {
+pub struct OperatingPointFailure {
     /// The speed.
     pub speed: f64,
     /// Why.
-    pub why: Unsteady,
+    pub why: SteadyStateError,
 }
 
 /// Flow, the first output of `local`, over increasing speeds at a load: the operating point is followed from the slowest
 /// speed to either side. The point at the slowest speed comes with it, from which another load is reached.
 ///
 /// # Errors
-/// [`Missed`].
+/// [`OperatingPointFailure`].
 pub fn curve(
-    chosen: &Chosen,
-    local: &mut Local,
-    from: &Point,
+    chosen: &LinearizationSetup,
+    local: &mut LocalEvaluator,
+    from: &OperatingPoint,
     (speed, speeds): (VarId, &[f64]),
     load: Option<(VarId, f64)>,
-) -> Result<(Point, Vec<(f64, f64)>), Missed> {
+) -> Result<(OperatingPoint, Vec<(f64, f64)>), OperatingPointFailure> {
     let mut points = vec![(0.0, 0.0); speeds.len()];
-    let mut go = |from: &Point, i: usize| {
+    let mut go = |from: &OperatingPoint, i: usize| {
         let target: Vec<(VarId, f64)> = load.into_iter().chain([(speed, speeds[i])]).collect();
-        let point = reach(chosen, local, from, &target).map_err(|why| Missed { speed: speeds[i], why })?;
+        let point =
+            reach(chosen, local, from, &target).map_err(|why| OperatingPointFailure { speed: speeds[i], why })?;
         points[i] = (speeds[i], local.outputs[0]);
         Ok(point)
     };
@@ -47,7 +48,7 @@ pub fn curve(
 
 /// What a curve of flow over speed says of one direction of rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Zones {
+pub struct FlowCharacteristic {
     /// Speed at which the line of the load zone has no flow: the end of the dead zone.
     pub dead: f64,
     /// Flow over speed in the load zone.
@@ -67,14 +68,15 @@ const LEAST: usize = 3;
 /// of at least three points.
 ///
 /// `curve` holds speed and flow, the speeds increasing, none twice.
-pub fn zones(curve: &[(f64, f64)]) -> [Option<Zones>; 2] {
+pub fn zones(curve: &[(f64, f64)]) -> [Option<FlowCharacteristic>; 2] {
     let forward: Vec<(f64, f64)> = curve.iter().copied().filter(|p| p.0 >= 0.0).collect();
     let backward: Vec<(f64, f64)> = curve.iter().rev().map(|p| (-p.0, -p.1)).filter(|p| p.0 >= 0.0).collect();
-    let mirrored = |z: Zones| Zones { dead: -z.dead, saturation: z.saturation.map(|s| -s), ..z };
+    let mirrored =
+        |z: FlowCharacteristic| FlowCharacteristic { dead: -z.dead, saturation: z.saturation.map(|s| -s), ..z };
     [one_way(&forward), one_way(&backward).map(mirrored)]
 }
 
-fn one_way(curve: &[(f64, f64)]) -> Option<Zones> {
+fn one_way(curve: &[(f64, f64)]) -> Option<FlowCharacteristic> {
     let slopes: Vec<f64> = curve.windows(2).map(|w| (w[1].1 - w[0].1) / (w[1].0 - w[0].0)).collect();
     let usual = usual_slope(curve, &slopes)?;
     let (from, to) = longest(&slopes, |s| s > LOADED * usual)?;
@@ -88,7 +90,7 @@ fn one_way(curve: &[(f64, f64)]) -> Option<Zones> {
         let most = above.iter().map(|p| p.1).sum::<f64>() / above.len() as f64;
         (most - offset) / slope
     });
-    Some(Zones { dead: -offset / slope, slope, straight, saturation })
+    Some(FlowCharacteristic { dead: -offset / slope, slope, straight, saturation })
 }
 
 /// The slope up to which half of the whole rise is made: flat zones add little to it however long they are, and a few steep

@@ -4,13 +4,13 @@
 //! difference in which all parameters move. Else by central differences of tight runs: the run itself finds the moved
 //! event times. Where a jump moves in time, the difference between the two events is the jump over the step, as it must be.
 
-use super::Tangent;
+use super::TangentModel;
 use super::lift::reading;
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
 use bramah_model::structure::StateChoice;
 use bramah_results::Trajectory;
-use bramah_solve::{Control, Settings, Tangents, signals, simulate};
+use bramah_solve::{Control, Settings, TangentRequest, signals, simulate};
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
@@ -29,7 +29,7 @@ pub struct Sensitivity {
 
 /// A parameter that is moved.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Moved {
+pub struct SensitivityParameter {
     /// The parameter.
     pub variable: VarId,
     /// Its name.
@@ -40,13 +40,13 @@ pub struct Moved {
     pub size: f64,
 }
 
-impl Moved {
+impl SensitivityParameter {
     /// A parameter whose value is among the values of all parameters.
     pub fn of(model: &CompiledModel, variable: VarId, values: &[f64]) -> Self {
         let system = &model.system;
         let value = values[system.layout.var(variable)];
         let size = if value == 0.0 { system.nominal(variable, values) } else { value.abs() };
-        Moved { variable, name: model.flat.variables[variable.index()].name.clone(), value, size }
+        SensitivityParameter { variable, name: model.flat.variables[variable.index()].name.clone(), value, size }
     }
 }
 
@@ -60,7 +60,7 @@ const STEP: f64 = 1e-4;
 const MOST_DOUBTS: usize = 16;
 
 /// Per parameter: its columns as the run carried them along, or why it could not.
-type Carried = Vec<Result<Vec<Vec<f64>>, String>>;
+type SensitivityColumns = Vec<Result<Vec<Vec<f64>>, String>>;
 
 /// Sensitivities to `moved`, each with respect to a relative change.
 ///
@@ -69,7 +69,7 @@ type Carried = Vec<Result<Vec<Vec<f64>>, String>>;
 pub fn sensitivity(
     model: &CompiledModel,
     settings: &Settings,
-    moved: &[Moved],
+    moved: &[SensitivityParameter],
     interrupt: &AtomicBool,
 ) -> Result<Sensitivity, String> {
     let settings = Settings { event_rows: false, ..settings.clone() };
@@ -77,7 +77,7 @@ pub fn sensitivity(
     let carried = carried(model, &settings, moved, (&mut plain, &mut doubts), interrupt);
     let plain = plain.map_or_else(|| run(model, &settings, None, interrupt), Ok)?;
     let doubtful = moved.iter().zip(&carried).filter(|(_, c)| c.is_err()).map(|(m, _)| m.clone());
-    let doubtful: Vec<Moved> = doubtful.collect();
+    let doubtful: Vec<SensitivityParameter> = doubtful.collect();
     let tight = Settings { tolerance: settings.tolerance.min(TIGHT), ..settings.clone() };
     let mut others = by_differences(model, &tight, &doubtful, interrupt)
         .or_else(|_| by_differences(model, &settings, &doubtful, interrupt))?
@@ -100,10 +100,10 @@ pub fn sensitivity(
 fn carried(
     model: &CompiledModel,
     settings: &Settings,
-    moved: &[Moved],
+    moved: &[SensitivityParameter],
     (plain, doubts): (&mut Option<Trajectory>, &mut usize),
     interrupt: &AtomicBool,
-) -> Carried {
+) -> SensitivityColumns {
     match by_equations(model, settings, moved, interrupt) {
         Ok((rows, columns)) => {
             plain.get_or_insert(rows);
@@ -138,15 +138,15 @@ const BETWEEN: f64 = 0.02;
 fn by_equations(
     model: &CompiledModel,
     settings: &Settings,
-    moved: &[Moved],
+    moved: &[SensitivityParameter],
     interrupt: &AtomicBool,
 ) -> Result<(Trajectory, Vec<Vec<Vec<f64>>>), String> {
     let directions: Vec<(VarId, f64)> = moved.iter().map(|m| (m.variable, m.size)).collect();
-    let tangent = Tangent::new(&model.flat, &directions)?;
+    let tangent = TangentModel::new(&model.flat, &directions)?;
     let carried = tangent.starts(settings, &[])?;
     // steps that suit the states may leap over what moves the derivatives
     let run = |controlled: bool| {
-        let carried = Tangents { controlled, ..carried.clone() };
+        let carried = TangentRequest { controlled, ..carried.clone() };
         along_the_run(model, (&tangent, carried), settings, moved, interrupt)
     };
     run(false).or_else(|why| run(true).map_err(|_| why))
@@ -155,9 +155,9 @@ fn by_equations(
 /// The same with these derivatives at the start.
 fn along_the_run(
     model: &CompiledModel,
-    (tangent, carried): (&Tangent, Tangents),
+    (tangent, carried): (&TangentModel, TangentRequest),
     settings: &Settings,
-    moved: &[Moved],
+    moved: &[SensitivityParameter],
     interrupt: &AtomicBool,
 ) -> Result<(Trajectory, Vec<Vec<Vec<f64>>>), String> {
     let all = Settings { tangents: Some(carried), ..settings.clone() };
@@ -182,16 +182,16 @@ fn along_the_run(
 fn agrees(
     model: &CompiledModel,
     settings: &Settings,
-    moved: &[Moved],
+    moved: &[SensitivityParameter],
     (plain, columns): (&Trajectory, &[Vec<Vec<f64>>]),
     interrupt: &AtomicBool,
 ) -> Result<(), String> {
     // those that follow others stay with them: moved themselves they would follow no more
-    let follows = |m: &Moved| {
+    let follows = |m: &SensitivityParameter| {
         let others = moved.iter().filter(|o| o.variable != m.variable);
         others.into_iter().any(|o| reading(&model.flat, &[o.variable]).iter().any(|(v, _)| *v == m.variable))
     };
-    let share = |(k, m): (usize, &Moved)| {
+    let share = |(k, m): (usize, &SensitivityParameter)| {
         let part = (1.0 + k as f64).cos();
         if follows(m) { 0.0 } else { inward(model, m).map_or(part, |side| side * part.abs()) }
     };
@@ -206,7 +206,7 @@ fn agrees(
 }
 
 /// The side on which a parameter has room, where it stands at a bound.
-fn inward(model: &CompiledModel, moved: &Moved) -> Option<f64> {
+fn inward(model: &CompiledModel, moved: &SensitivityParameter) -> Option<f64> {
     let system = &model.system;
     let mut values = system.layout.values();
     system.evaluate_parameters(&mut values, &[]);
@@ -250,7 +250,7 @@ fn combine(runs: &[(&Trajectory, f64)]) -> Option<Vec<Vec<f64>>> {
 fn agrees_over(
     model: &CompiledModel,
     settings: &Settings,
-    moved: &[Moved],
+    moved: &[SensitivityParameter],
     (share, step): (&[f64], f64),
     (plain, columns): (&Trajectory, &[Vec<Vec<f64>>]),
     interrupt: &AtomicBool,
@@ -281,10 +281,10 @@ fn agrees_over(
 fn by_differences(
     model: &CompiledModel,
     settings: &Settings,
-    moved: &[Moved],
+    moved: &[SensitivityParameter],
     interrupt: &AtomicBool,
 ) -> Result<Vec<Vec<Vec<f64>>>, String> {
-    let by = |m: &Moved| {
+    let by = |m: &SensitivityParameter| {
         let change = |by: f64| vec![(m.variable, m.value + by * m.size)];
         along(model, settings, &change, STEP, interrupt)
     };
@@ -350,24 +350,25 @@ mod tests {
         parameters: &[&str],
         variable: &str,
         stop: f64,
-    ) -> (CompiledModel, Settings, Vec<Moved>) {
+    ) -> (CompiledModel, Settings, Vec<SensitivityParameter>) {
         let world = MemoryWorld::single("m.mo", text);
         let request =
             bramah_model::compile::Request { source: source.into(), ..bramah_model::compile::Request::default() };
-        let model = bramah_circuit::compiled::compile(&world, &request, &bramah_solve::lower::Options::INTERPRETED)
-            .value
-            .expect("sound");
+        let model =
+            bramah_circuit::compiled::compile(&world, &request, &bramah_solve::lower::LoweringOptions::INTERPRETED)
+                .value
+                .expect("sound");
         let id = |n: &str| {
             let i = model.flat.variables.iter().position(|v| v.name == n).expect("there");
             VarId(u32::try_from(i).expect("small"))
         };
         let mut values = model.system.layout.values();
         model.system.evaluate_parameters(&mut values, &[]);
-        let moved: Vec<Moved> = parameters
+        let moved: Vec<SensitivityParameter> = parameters
             .iter()
             .map(|n| {
                 let value = values[model.system.layout.var(id(n))];
-                Moved { variable: id(n), name: (*n).to_owned(), value, size: value.abs() }
+                SensitivityParameter { variable: id(n), name: (*n).to_owned(), value, size: value.abs() }
             })
             .collect();
         let settings = Settings {

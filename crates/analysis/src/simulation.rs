@@ -1,12 +1,12 @@
 //! What a [`Simulation`] can be asked beyond a run.
 
-use super::linear::{self, Choice, Chosen, StateSpace};
-use super::sensitivity::{Moved, Sensitivity, TOLERANCE, sensitivity};
+use super::linear::{self, InputOutputSelection, LinearizationSetup, StateSpace};
+use super::sensitivity::{Sensitivity, SensitivityParameter, TOLERANCE, sensitivity};
 use super::steady;
 use bramah_circuit::Simulation;
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
-use bramah_model::flat::{Type, Variability};
+use bramah_model::flat::{ScalarType, Variability};
 use bramah_results::Trajectory;
 use bramah_solve::{Control, Settings, State};
 use bramah_syntax::diag::{Code, Diagnostic, Error};
@@ -97,7 +97,7 @@ impl Analyze for Simulation {
         let moved = parameters.iter().map(|name| moved(self, name)).collect::<Result<Vec<_>, _>>()?;
         let moves = |v: &VarId| {
             let variable = &self.model().flat.variables[v.index()];
-            variable.ty == Type::Real && variable.variability == Variability::Continuous
+            variable.ty == ScalarType::Real && variable.variability == Variability::Continuous
         };
         let wanted = self.run_settings().wanted.iter().copied().filter(moves).collect();
         let settings =
@@ -117,20 +117,25 @@ fn as_set(simulation: &Simulation) -> Result<Cow<'_, CompiledModel>, Error> {
     }
 }
 
-fn chosen(simulation: &Simulation, model: &CompiledModel, inputs: &[&str], outputs: &[&str]) -> Result<Chosen, Error> {
+fn chosen(
+    simulation: &Simulation,
+    model: &CompiledModel,
+    inputs: &[&str],
+    outputs: &[&str],
+) -> Result<LinearizationSetup, Error> {
     let list = |names: &[&str]| names.iter().map(|&n| n.to_owned()).collect();
-    let choice = Choice { inputs: list(inputs), outputs: list(outputs) };
-    Chosen::new(&model.flat, &choice, &[]).map_err(|diagnostics| simulation.errors(diagnostics))
+    let choice = InputOutputSelection { inputs: list(inputs), outputs: list(outputs) };
+    LinearizationSetup::new(&model.flat, &choice, &[]).map_err(|diagnostics| simulation.errors(diagnostics))
 }
 
-fn moved(simulation: &Simulation, name: &str) -> Result<Moved, Error> {
+fn moved(simulation: &Simulation, name: &str) -> Result<SensitivityParameter, Error> {
     let variable: VarId = simulation.variable(name)?;
     let declared = &simulation.model().flat.variables[variable.index()];
-    if declared.variability != Variability::Parameter || declared.ty != Type::Real {
+    if declared.variability != Variability::Parameter || declared.ty != ScalarType::Real {
         let text = format!("`{name}` is no parameter that can move during runs");
         return Err(simulation.errors(vec![Diagnostic::new(Code::BadSet, text)]));
     }
-    Ok(Moved::of(simulation.model(), variable, &simulation.parameter_values()))
+    Ok(SensitivityParameter::of(simulation.model(), variable, &simulation.parameter_values()))
 }
 
 #[cfg(test)]

@@ -3,11 +3,11 @@
 //! Pseudo-transient continuation: implicit Euler steps that grow as the rates fall, and so become Newton's method.
 //! Source: C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508.
 
-use super::linear::Chosen;
-use super::local::{Local, LocalError};
+use super::linear::LinearizationSetup;
+use super::local::{LocalError, LocalEvaluator};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
-use bramah_expr::units::Unit;
+use bramah_expr::units::MeasurementUnit;
 use bramah_model::structure::StateChoice;
 use bramah_results::{Trajectory, number};
 use bramah_solve::{Control, Settings, State, signals, simulate};
@@ -17,7 +17,7 @@ use std::sync::atomic::AtomicBool;
 
 /// A steady state.
 #[derive(Clone, Debug)]
-pub struct Steady {
+pub struct SteadyState {
     /// Values of the states, in the order of the plan; those that nothing depends on are where they were.
     pub x: Vec<f64>,
     /// The largest rate left, over the state's usual size, in 1/s.
@@ -31,7 +31,7 @@ pub struct Steady {
 
 /// Why there is none.
 #[derive(Clone, Debug, thiserror::Error)]
-pub enum Unsteady {
+pub enum SteadyStateError {
     /// The equations have no solution where the search led.
     #[error("{0}")]
     Local(#[from] LocalError),
@@ -45,12 +45,12 @@ pub enum Unsteady {
     },
 }
 
-impl Unsteady {
+impl SteadyStateError {
     /// What a user reads.
-    pub fn said(&self, chosen: &Chosen) -> Diagnostic {
+    pub fn said(&self, chosen: &LinearizationSetup) -> Diagnostic {
         let d = Diagnostic::new(Code::InitialFailed, format!("no steady state was found: {self}"));
         match self {
-            Unsteady::Restless { state, rate } => {
+            SteadyStateError::Restless { state, rate } => {
                 let v = chosen.plan.state_variables().nth(*state);
                 let name = v.map_or_else(String::new, |v| chosen.plan.system.dae.variables[v.index()].name.clone());
                 let rate = number::rounded(*rate, 3);
@@ -58,7 +58,7 @@ impl Unsteady {
                     "give start values nearer to it, or look at a run: it may oscillate, or rest on a command in time",
                 )
             }
-            Unsteady::Local(_) => d.help("give start values nearer to it"),
+            SteadyStateError::Local(_) => d.help("give start values nearer to it"),
         }
     }
 }
@@ -75,11 +75,16 @@ const LATER: [f64; 3] = [0.01, 0.1, 1.0];
 /// that open and close, from where a run from there leads.
 ///
 /// # Errors
-/// [`Unsteady`].
-pub fn rest(model: &CompiledModel, chosen: &Chosen, state: &State, interrupt: &AtomicBool) -> Result<State, Unsteady> {
+/// [`SteadyStateError`].
+pub fn rest(
+    model: &CompiledModel,
+    chosen: &LinearizationSetup,
+    state: &State,
+    interrupt: &AtomicBool,
+) -> Result<State, SteadyStateError> {
     let from = |at: &State| steady(chosen, at).map(|(found, _)| put(chosen, &found.x, at.clone()));
     let why = match from(state) {
-        Err(why @ Unsteady::Restless { .. }) => why,
+        Err(why @ SteadyStateError::Restless { .. }) => why,
         other => return other,
     };
     let experiment = Settings::from_experiment(&model.dae.experiment);
@@ -96,7 +101,7 @@ pub fn rest(model: &CompiledModel, chosen: &Chosen, state: &State, interrupt: &A
 }
 
 /// A state of the model with these values of its states.
-fn put(chosen: &Chosen, x: &[f64], mut state: State) -> State {
+fn put(chosen: &LinearizationSetup, x: &[f64], mut state: State) -> State {
     for (v, &x) in chosen.plan.state_variables().zip(x) {
         state.values[v.index()] = x;
     }
@@ -109,7 +114,7 @@ fn put(chosen: &Chosen, x: &[f64], mut state: State) -> State {
 /// The diagnostics of a run that did not reach its end.
 pub fn run_from(
     model: &CompiledModel,
-    chosen: &Chosen,
+    chosen: &LinearizationSetup,
     state: &State,
     length: f64,
     wanted: &[VarId],
@@ -135,15 +140,15 @@ pub fn run_from(
 /// The steady state reached from a state of the model, with its inputs and parameters.
 ///
 /// # Errors
-/// [`Unsteady`].
-pub fn steady(chosen: &Chosen, from: &State) -> Result<(Steady, Local), Unsteady> {
+/// [`SteadyStateError`].
+pub fn steady(chosen: &LinearizationSetup, from: &State) -> Result<(SteadyState, LocalEvaluator), SteadyStateError> {
     let (theta, u) = chosen.given(from);
     let mut local = chosen.at(from)?;
     let x = local.state();
     let found = search(&mut local, (from.time, &theta, &u), &x, &[]).or_else(|why| {
         // shafts joined by springs turn together: only then, for a search with less to hold still may end elsewhere
         let places = places(chosen);
-        if places.is_empty() || !matches!(why, Unsteady::Restless { .. }) {
+        if places.is_empty() || !matches!(why, SteadyStateError::Restless { .. }) {
             return Err(why);
         }
         search(&mut local, (from.time, &theta, &u), &x, &places).map_err(|_| why)
@@ -152,7 +157,7 @@ pub fn steady(chosen: &Chosen, from: &State) -> Result<(Steady, Local), Unsteady
 }
 
 /// States that are angles or positions, by their units.
-fn places(chosen: &Chosen) -> Vec<usize> {
+fn places(chosen: &LinearizationSetup) -> Vec<usize> {
     let variables = &chosen.plan.system.dae.variables;
     let is_place = |unit: &str| ["rad", "m"].iter().any(|place| same_kind(unit, place));
     let units = chosen.plan.state_variables().map(|v| variables[v.index()].unit.as_deref().unwrap_or(""));
@@ -161,20 +166,26 @@ fn places(chosen: &Chosen) -> Vec<usize> {
 
 /// Units that can be converted into each other; those of angles are no plain numbers.
 fn same_kind(a: &str, b: &str) -> bool {
-    matches!((Unit::parse(a), Unit::parse(b)), (Ok(a), Ok(b)) if (a.dimension, a.angle) == (b.dimension, b.angle))
+    matches!((MeasurementUnit::parse(a), MeasurementUnit::parse(b)), (Ok(a), Ok(b)) if (a.dimension, a.angle) == (b.dimension, b.angle))
 }
 
 /// The steady state of `local` reached from `x`.
 ///
 /// # Errors
-/// [`Unsteady`].
-pub fn settle(local: &mut Local, time: f64, x: Vec<f64>, theta: &[f64], u: &[f64]) -> Result<Steady, Unsteady> {
+/// [`SteadyStateError`].
+pub fn settle(
+    local: &mut LocalEvaluator,
+    time: f64,
+    x: Vec<f64>,
+    theta: &[f64],
+    u: &[f64],
+) -> Result<SteadyState, SteadyStateError> {
     search(local, (time, theta, u), &x, &[])
 }
 
 /// A steady state that others are reached from.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct OperatingPoint {
     /// Its states, in the order of the plan.
     pub x: Vec<f64>,
     /// A state of the model, for what is given there: time, parameters and inputs.
@@ -188,23 +199,28 @@ const HALVINGS: u32 = 5;
 /// `local` are then those of this state.
 ///
 /// # Errors
-/// [`Unsteady`], as it was met first.
-pub fn reach(chosen: &Chosen, local: &mut Local, from: &Point, target: &[(VarId, f64)]) -> Result<Point, Unsteady> {
+/// [`SteadyStateError`], as it was met first.
+pub fn reach(
+    chosen: &LinearizationSetup,
+    local: &mut LocalEvaluator,
+    from: &OperatingPoint,
+    target: &[(VarId, f64)],
+) -> Result<OperatingPoint, SteadyStateError> {
     go(chosen, local, from, target, HALVINGS)
 }
 
 fn go(
-    chosen: &Chosen,
-    local: &mut Local,
-    from: &Point,
+    chosen: &LinearizationSetup,
+    local: &mut LocalEvaluator,
+    from: &OperatingPoint,
     target: &[(VarId, f64)],
     halvings: u32,
-) -> Result<Point, Unsteady> {
+) -> Result<OperatingPoint, SteadyStateError> {
     let mut given = from.given.clone();
     target.iter().for_each(|&(v, value)| given.values[v.index()] = value);
     let (theta, u) = chosen.given(&given);
     let why = match settle(local, given.time, from.x.clone(), &theta, &u) {
-        Ok(found) => return Ok(Point { x: found.x, given }),
+        Ok(found) => return Ok(OperatingPoint { x: found.x, given }),
         Err(why) if halvings > 0 => why,
         Err(why) => return Err(why),
     };
@@ -217,21 +233,21 @@ fn go(
 /// The steady state of `local` at a time with its parameters and inputs, reached from `x`. States among `places` may move
 /// on together where nothing depends on this motion.
 fn search(
-    local: &mut Local,
+    local: &mut LocalEvaluator,
     (time, theta, u): (f64, &[f64], &[f64]),
     x: &[f64],
     places: &[usize],
-) -> Result<Steady, Unsteady> {
+) -> Result<SteadyState, SteadyStateError> {
     let nominals = local.nominals();
     let mut x = x.to_vec();
     let n = x.len();
     local.linearize(time, &x, theta, u)?;
-    let mut at = Scaled::new(local, &nominals, places);
+    let mut at = ScaledLinearization::new(local, &nominals, places);
     let mut size = at.norm();
     let mut step = 1e-3;
     for count in 0..STEPS {
         if size <= REST {
-            return Ok(Steady { x, rest: size, idle: at.idle, steps: count });
+            return Ok(SteadyState { x, rest: size, idle: at.idle, steps: count });
         }
         let next = at.euler(&x, &nominals, step);
         let found = next.filter(|x| x.iter().all(|v| v.is_finite())).filter(|next| {
@@ -245,7 +261,7 @@ fn search(
             local.linearize(time, &x, theta, u)?;
             continue;
         };
-        at = Scaled::new(local, &nominals, places);
+        at = ScaledLinearization::new(local, &nominals, places);
         let now = at.norm();
         // rates may rise on the way, as they do in a run
         step = (step * (size / now.max(1e-30)).clamp(0.2, 5.0) * 1.5).clamp(1e-12, 1e15);
@@ -253,22 +269,22 @@ fn search(
     }
     let rates = (0..n).filter(|i| !at.idle.contains(i)).map(|i| (i, at.rates[i].abs()));
     let (state, rate) = rates.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((0, 0.0));
-    Err(Unsteady::Restless { state, rate })
+    Err(SteadyStateError::Restless { state, rate })
 }
 
 /// Rates and their derivatives in units of the states' usual sizes, and the states that stand for themselves alone.
-struct Scaled {
+struct ScaledLinearization {
     a: DMatrix<f64>,
     rates: Vec<f64>,
     idle: Vec<usize>,
 }
 
-impl Scaled {
-    fn new(local: &Local, nominals: &[f64], places: &[usize]) -> Self {
+impl ScaledLinearization {
+    fn new(local: &LocalEvaluator, nominals: &[f64], places: &[usize]) -> Self {
         let n = nominals.len();
         let a = DMatrix::from_fn(n, n, |i, j| local.linear.a[(i, j)] * nominals[j] / nominals[i]);
         let rates = local.rates.iter().zip(nominals).map(|(r, n)| r / n).collect();
-        let mut scaled = Scaled { idle: idle(&a), a, rates };
+        let mut scaled = ScaledLinearization { idle: idle(&a), a, rates };
         let joined: Vec<usize> = places.iter().copied().filter(|p| !scaled.idle.contains(p)).collect();
         for (leader, others) in together(&scaled.a, &joined) {
             // the others are counted from where the leader is: on what the leader itself does nothing depends any more
@@ -377,17 +393,18 @@ pub fn idle(a: &DMatrix<f64>) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linear::Choice;
+    use crate::linear::InputOutputSelection;
     use bramah_circuit::Simulation;
     use bramah_model::compile::Request;
     use bramah_syntax::world::MemoryWorld;
 
-    fn found(text: &str) -> Result<(Steady, Vec<String>), Unsteady> {
+    fn found(text: &str) -> Result<(SteadyState, Vec<String>), SteadyStateError> {
         let world = MemoryWorld::single("m.mo", text);
         let request = Request { source: "m.mo".into(), ..Request::default() };
         let mut simulation = Simulation::compile(&world, &request).expect("sound");
         let state = simulation.stop_time(1e-9).run().expect("starts").state;
-        let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
+        let chosen =
+            LinearizationSetup::new(&simulation.model().flat, &InputOutputSelection::default(), &[]).expect("fits");
         let names = chosen.plan.state_variables().map(|v| chosen.plan.system.dae.variables[v.index()].name.clone());
         let names = names.collect();
         steady(&chosen, &state).map(|(s, _)| (s, names))
@@ -428,7 +445,7 @@ mod tests {
         assert_eq!(steady.idle.len(), 1);
         // pressures that rise together are no motion
         let oil = text.replace("\"rad\"", "\"Pa\"");
-        assert!(matches!(found(&oil), Err(Unsteady::Restless { .. })));
+        assert!(matches!(found(&oil), Err(SteadyStateError::Restless { .. })));
     }
 
     /// Constant rates on which nothing depends are motion; a rate that grows with it, or lets others follow, is not.
@@ -446,6 +463,6 @@ mod tests {
     #[test]
     fn a_model_that_never_rests_says_which_state_moves() {
         let text = "model M Real x(start = 0, fixed = true), y; equation der(x) = 1 + 0.5*sin(x); y = x; end M;";
-        assert!(matches!(found(text), Err(Unsteady::Restless { state: 0, .. })));
+        assert!(matches!(found(text), Err(SteadyStateError::Restless { state: 0, .. })));
     }
 }

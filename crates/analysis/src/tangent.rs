@@ -3,32 +3,32 @@
 
 use super::lift;
 use bramah_expr::VarId;
-use bramah_model::flat::{FlatModel, Type, Variability, WhenAction};
+use bramah_model::flat::{FlatModel, ScalarType, Variability, WhenAction};
 use bramah_model::structure::{self, StateChoice};
-use bramah_solve::lower::{Options, System, lower};
-use bramah_solve::{Control, End, Input, Settings, State, Tangents, simulate};
+use bramah_solve::lower::{ExecutableSystem, LoweringOptions, lower};
+use bramah_solve::{Control, End, RecordedInput, Settings, State, TangentRequest, simulate};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// A model ready to run with sensitivities to some of its parameters.
 #[derive(Clone, Debug)]
-pub struct Tangent {
+pub struct TangentModel {
     /// The system; variables of the model keep their numbers.
-    pub system: Arc<System>,
+    pub system: Arc<ExecutableSystem>,
     /// Per parameter, what one unit of its direction means.
     sizes: Vec<f64>,
-    raised: Vec<lift::Raised>,
+    raised: Vec<lift::AugmentedState>,
 }
 
 /// Step of the differences between starts, in units of the directions.
 const STEP: f64 = 1e-4;
 
-impl Tangent {
+impl TangentModel {
     /// For parameters, each with the size of a unit of its direction.
     ///
     /// # Errors
     /// In words, why runs cannot carry the sensitivities along.
-    pub fn new(flat: &FlatModel, parameters: &[(VarId, f64)]) -> Result<Tangent, String> {
+    pub fn new(flat: &FlatModel, parameters: &[(VarId, f64)]) -> Result<TangentModel, String> {
         let variables: Vec<VarId> = parameters.iter().map(|p| p.0).collect();
         if let Some(v) = flat.variables.iter().find(|v| v.variability == Variability::Parameter && !v.fixed) {
             return Err(format!("`{}` is found at the start", v.name));
@@ -43,8 +43,8 @@ impl Tangent {
         if !dae.delays.is_empty() {
             return Err("what is delayed is not carried along".to_owned());
         }
-        let system = Arc::new(lower(Arc::new(dae), &Options { conserve: false, ..Options::default() }));
-        Ok(Tangent { system, sizes: parameters.iter().map(|p| p.1).collect(), raised: lifted.parameters })
+        let system = Arc::new(lower(Arc::new(dae), &LoweringOptions { conserve: false, ..LoweringOptions::default() }));
+        Ok(TangentModel { system, sizes: parameters.iter().map(|p| p.1).collect(), raised: lifted.parameters })
     }
 
     /// What a run with these settings carries along: per parameter the derivatives of its start, which are differences of
@@ -52,19 +52,19 @@ impl Tangent {
     ///
     /// # Errors
     /// In words, when there is no start beside the given one.
-    pub fn starts(&self, settings: &Settings, inputs: &[Input]) -> Result<Tangents, String> {
+    pub fn starts(&self, settings: &Settings, inputs: &[RecordedInput]) -> Result<TangentRequest, String> {
         let at = Settings { stop_time: settings.start_time, interval: 0.0, ..settings.clone() };
         let base = self.start(&at, inputs, None)?;
         let directions: Result<Vec<_>, String> =
             (0..self.raised.len()).into_par_iter().map(|k| self.direction(&at, inputs, &base, k)).collect();
         let still = self.raised.iter().map(|r| r.state).collect();
-        Ok(Tangents { still, starts: directions?, controlled: false })
+        Ok(TangentRequest { still, starts: directions?, controlled: false })
     }
 
     /// What a run carries along that starts at given states: the parameters alone move.
-    pub fn inside(&self) -> Tangents {
+    pub fn inside(&self) -> TangentRequest {
         let raised = self.raised.iter().zip(&self.sizes);
-        Tangents {
+        TangentRequest {
             still: self.raised.iter().map(|r| r.state).collect(),
             starts: raised.map(|(r, &size)| vec![(r.state, size)]).collect(),
             controlled: false,
@@ -74,7 +74,7 @@ impl Tangent {
     fn direction(
         &self,
         settings: &Settings,
-        inputs: &[Input],
+        inputs: &[RecordedInput],
         base: &State,
         k: usize,
     ) -> Result<Vec<(VarId, f64)>, String> {
@@ -96,7 +96,12 @@ impl Tangent {
     ///
     /// # Errors
     /// In words, when there is none.
-    pub fn start(&self, settings: &Settings, inputs: &[Input], moved: Option<(VarId, f64)>) -> Result<State, String> {
+    pub fn start(
+        &self,
+        settings: &Settings,
+        inputs: &[RecordedInput],
+        moved: Option<(VarId, f64)>,
+    ) -> Result<State, String> {
         let mut settings = Settings { tangents: None, wanted: Vec::new(), ..settings.clone() };
         settings.parameters.retain(|p| moved.is_none_or(|m| m.0 != p.0));
         settings.parameters.extend(moved);
@@ -120,12 +125,14 @@ fn sampled(flat: &FlatModel, parameters: &[VarId]) -> bool {
     let mut moves: Vec<bool> = flat
         .variables
         .iter()
-        .map(|v| v.variability == Variability::Continuous && v.ty == Type::Real && !v.input)
+        .map(|v| v.variability == Variability::Continuous && v.ty == ScalarType::Real && !v.input)
         .collect();
     parameters.iter().chain(&followers).for_each(|v| moves[v.index()] = true);
     let actions = flat.whens.iter().flat_map(|w| &w.branches).flat_map(|b| &b.actions);
     let mut values = actions.filter_map(|a| match a {
-        WhenAction::Assign { variable, value, .. } if flat.variables[variable.index()].ty == Type::Real => Some(*value),
+        WhenAction::Assign { variable, value, .. } if flat.variables[variable.index()].ty == ScalarType::Real => {
+            Some(*value)
+        }
         _ => None,
     });
     values.any(|value| flat.exprs.variables(value).iter().any(|v| moves[v.index()]))

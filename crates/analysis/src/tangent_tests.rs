@@ -15,7 +15,7 @@ fn flat(text: &str) -> FlatModel {
 fn carried(text: &str, parameters: &[(&str, f64)], wanted: &[&str], stop: f64) -> (Vec<f64>, Vec<Vec<Vec<f64>>>) {
     let flat = flat(text);
     let moved: Vec<(VarId, f64)> = parameters.iter().map(|(n, size)| (id(&flat, n), *size)).collect();
-    let tangent = Tangent::new(&flat, &moved).expect("can be carried");
+    let tangent = TangentModel::new(&flat, &moved).expect("can be carried");
     let mut settings = Settings {
         stop_time: stop,
         interval: stop / 20.0,
@@ -52,7 +52,7 @@ fn what_cannot_be_carried_is_refused() {
         "model M parameter Real p = 1; discrete Real u(start = 0); Real x(start = 1, fixed = true);
         equation der(x) = u - x; when sample(0, 0.1) then u = p*x; end when; end M;",
     );
-    let why = Tangent::new(&sampled, &[(id(&sampled, "p"), 1.0)]).err();
+    let why = TangentModel::new(&sampled, &[(id(&sampled, "p"), 1.0)]).err();
     assert_eq!(why.as_deref(), Some("sampled values depend on what moves"));
 }
 

@@ -1,20 +1,20 @@
 //! Functions of the caller's that a run calls: they may end it, and a panic of theirs becomes an error.
 
-use bramah_solve::Sink;
+use bramah_solve::RowSink;
 use bramah_syntax::diag::{Code, Diagnostic};
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// What a callback did beside its work.
 #[derive(Debug, Default)]
-pub(super) struct Conduct {
+pub(super) struct CallbackStatus {
     /// It asked for the end.
     pub stopped: bool,
     /// The text of its panic.
     pub panic: Option<String>,
 }
 
-impl Conduct {
+impl CallbackStatus {
     /// Calls it; true when the run may go on.
     pub fn call(&mut self, callback: impl FnOnce() -> bool) -> bool {
         match catch_unwind(AssertUnwindSafe(callback)) {
@@ -39,16 +39,16 @@ impl Conduct {
 }
 
 /// Hands rows to a function.
-pub(super) struct Rows<'f> {
+pub(super) struct RowCallback<'f> {
     /// Takes the time and the values.
     pub on_row: &'f mut (dyn FnMut(f64, &[f64]) -> ControlFlow<()> + Send),
     /// How it behaved.
-    pub conduct: Conduct,
+    pub conduct: CallbackStatus,
 }
 
-impl Sink for Rows<'_> {
+impl RowSink for RowCallback<'_> {
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
-        let Rows { on_row, conduct } = self;
+        let RowCallback { on_row, conduct } = self;
         if conduct.call(|| on_row(time, values).is_continue()) {
             ControlFlow::Continue(())
         } else {

@@ -1,11 +1,11 @@
 //! A model ready to run: what the front half of the pipeline made, lowered to kernels.
 
 use bramah_expr::VarId;
-use bramah_model::compile::{Outcome, Request, analyze, sort, sort_messages};
+use bramah_model::compile::{CompileOutcome, Request, analyze, sort, sort_messages};
 use bramah_model::flat::FlatModel;
-use bramah_model::network::Graph;
+use bramah_model::network::ComponentGraph;
 use bramah_model::structure::{self, Dae, StateChoice};
-use bramah_solve::lower::{self, System};
+use bramah_solve::lower::{self, ExecutableSystem};
 use bramah_syntax::diag::Diagnostic;
 use bramah_syntax::world::World;
 use std::sync::Arc;
@@ -16,18 +16,18 @@ pub struct CompiledModel {
     /// Scalar variables and equations; kept so that other states can be chosen during a run.
     pub flat: Arc<FlatModel>,
     /// Components and connections of the top level.
-    pub graph: Graph,
+    pub graph: ComponentGraph,
     /// Sorted equations.
     pub dae: Arc<Dae>,
     /// Kernels.
-    pub system: Arc<System>,
+    pub system: Arc<ExecutableSystem>,
 }
 
 impl CompiledModel {
     /// The same model lowered for other states; for `solve::Control::reselect`.
-    pub fn with_states(&self, choice: &StateChoice) -> Option<Arc<System>> {
+    pub fn with_states(&self, choice: &StateChoice) -> Option<Arc<ExecutableSystem>> {
         let dae = structure::analyze(&self.flat, choice).value?;
-        Some(Arc::new(lower::lower(Arc::new(dae), &lower::Options::default())))
+        Some(Arc::new(lower::lower(Arc::new(dae), &lower::LoweringOptions::default())))
     }
 
     /// The same model whose parameters have these values from the beginning; sorted anew.
@@ -41,19 +41,23 @@ impl CompiledModel {
         }
         let sorted = analyze(&flat);
         let dae = Arc::new(sorted.value.ok_or(sorted.diagnostics)?);
-        let system = Arc::new(lower::lower(dae.clone(), &lower::Options::default()));
+        let system = Arc::new(lower::lower(dae.clone(), &lower::LoweringOptions::default()));
         Ok(CompiledModel { flat: Arc::new(flat), graph: self.graph.clone(), dae, system })
     }
 }
 
 /// The whole pipeline.
-pub fn compile(world: &dyn World, request: &Request, options: &lower::Options) -> Outcome<CompiledModel> {
-    let Outcome { sources, mut diagnostics, value } = sort(world, request);
+pub fn compile(
+    world: &dyn World,
+    request: &Request,
+    options: &lower::LoweringOptions,
+) -> CompileOutcome<CompiledModel> {
+    let CompileOutcome { sources, mut diagnostics, value } = sort(world, request);
     let model = value.map(|(flat, graph, dae)| {
         let dae = Arc::new(dae);
         let system = Arc::new(lower::lower(dae.clone(), options));
         CompiledModel { flat: Arc::new(flat), graph, dae, system }
     });
     sort_messages(&mut diagnostics);
-    Outcome { sources, diagnostics, value: model }
+    CompileOutcome { sources, diagnostics, value: model }
 }

@@ -1,7 +1,7 @@
 //! Model exchange: a compiled model whose integrator is the caller's.
 
 use super::{InputPort, Probe, Simulation};
-use bramah_solve::driver::exchange::{self, Happened};
+use bramah_solve::driver::exchange::{self, ExchangeEventResult};
 use bramah_syntax::diag::{Code, Diagnostic, Error};
 
 /// A model that gives derivatives and takes states, from [`Simulation::exchange`].
@@ -23,7 +23,7 @@ use bramah_syntax::diag::{Code, Diagnostic, Error};
 /// ```
 pub struct Exchange<'a> {
     simulation: &'a Simulation,
-    inner: exchange::Exchange<'a>,
+    inner: exchange::ExchangeDriver<'a>,
 }
 
 impl<'a> Exchange<'a> {
@@ -33,7 +33,7 @@ impl<'a> Exchange<'a> {
             let d = Diagnostic::new(Code::Unsupported, format!("the model cannot be integrated by others: {why}"));
             return Err(simulation.errors(vec![d]));
         }
-        let inner = exchange::Exchange::new(system, simulation.run_settings(), simulation.given_inputs());
+        let inner = exchange::ExchangeDriver::new(system, simulation.run_settings(), simulation.given_inputs());
         Ok(Exchange { simulation, inner: inner.map_err(|stop| simulation.errors(stop.diagnostics))? })
     }
 
@@ -117,7 +117,7 @@ impl<'a> Exchange<'a> {
     ///
     /// # Errors
     /// As a run that ends there.
-    pub fn event(&mut self) -> Result<Happened, Error> {
+    pub fn event(&mut self) -> Result<ExchangeEventResult, Error> {
         self.inner.event().map_err(|stop| self.simulation.errors(stop.diagnostics))
     }
 

@@ -60,7 +60,7 @@ use std::sync::Arc;
 pub struct Circuit {
     name: String,
     declarations: String,
-    components: Vec<Component>,
+    components: Vec<CircuitComponent>,
     connections: Vec<(String, String)>,
     equations: Vec<String>,
     /// Parameters that were set before there was a component.
@@ -69,7 +69,7 @@ pub struct Circuit {
 
 /// A component with what modifies it.
 #[derive(Clone, Debug)]
-struct Component {
+struct CircuitComponent {
     /// `inner ` or nothing.
     prefix: &'static str,
     name: String,
@@ -111,7 +111,7 @@ impl Circuit {
     }
 
     fn component(&mut self, prefix: &'static str, name: String, class: String) -> &mut Self {
-        self.components.push(Component { prefix, name, class, modifiers: Vec::new(), quantities: Vec::new() });
+        self.components.push(CircuitComponent { prefix, name, class, modifiers: Vec::new(), quantities: Vec::new() });
         self
     }
 
@@ -157,7 +157,7 @@ impl Circuit {
         for line in self.declarations.lines() {
             let _ = writeln!(text, "  {line}");
         }
-        for Component { prefix, name, class, modifiers, quantities } in &self.components {
+        for CircuitComponent { prefix, name, class, modifiers, quantities } in &self.components {
             let list = if modifiers.is_empty() { String::new() } else { format!("({})", modifiers.join(", ")) };
             let _ = writeln!(text, "  {prefix}{class} {name}{list};");
             for (parameter, value) in quantities {
@@ -187,7 +187,7 @@ impl Circuit {
         }
         let file = format!("{}.mo", self.name);
         let world = MemoryWorld::single(&file, self.text());
-        let given = |c: &Component| {
+        let given = |c: &CircuitComponent| {
             let of = c.name.clone();
             let values = c.quantities.clone().into_iter();
             values.map(move |(parameter, value)| Override { name: format!("{of}.{parameter}"), value })

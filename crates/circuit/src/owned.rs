@@ -5,7 +5,7 @@ use bramah_solve::State;
 use bramah_syntax::diag::Error;
 
 self_cell::self_cell!(
-    struct Cell {
+    struct SteppingCell {
         owner: Simulation,
         #[not_covariant]
         dependent: Stepping,
@@ -14,7 +14,7 @@ self_cell::self_cell!(
 
 /// [`Stepping`] without a lifetime: it owns its simulation.
 pub struct OwnedStepping {
-    cell: Cell,
+    cell: SteppingCell,
 }
 
 impl OwnedStepping {
@@ -23,7 +23,7 @@ impl OwnedStepping {
     /// # Errors
     /// As [`Simulation::stepping`] and [`Simulation::stepping_from`].
     pub fn new(simulation: Simulation, from: Option<&State>) -> Result<Self, Error> {
-        Ok(OwnedStepping { cell: Cell::try_new(simulation, |simulation| Stepping::new(simulation, from))? })
+        Ok(OwnedStepping { cell: SteppingCell::try_new(simulation, |simulation| Stepping::new(simulation, from))? })
     }
 
     /// Acts on the run.

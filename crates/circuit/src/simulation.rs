@@ -1,6 +1,6 @@
 //! A compiled model with the settings of a run.
 
-use super::callback::{Conduct, Rows};
+use super::callback::{CallbackStatus, RowCallback};
 use super::exchange::Exchange;
 use super::stepping::Stepping;
 use crate::compiled::{CompiledModel, compile};
@@ -10,9 +10,10 @@ use bramah_model::flat::Variability;
 use bramah_model::structure::StateChoice;
 use bramah_model::structure::parameters::out_of_range;
 use bramah_results::{Signal, Trajectory};
-use bramah_solve::lower::{self, System};
+use bramah_solve::lower::{self, ExecutableSystem};
 use bramah_solve::{
-    self as solve, Control, End, Input, Interpolation, Progress, Run, Settings, Sink, State, Statistics,
+    self as solve, Control, End, Interpolation, Progress, RecordedInput, RowSink, RunResult, Settings, State,
+    Statistics,
 };
 use bramah_syntax::diag::{Code, Diagnostic, Error, Sources};
 use bramah_syntax::world::{DiskWorld, MemoryWorld, World};
@@ -35,8 +36,8 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    fn new(run: Run, trajectory: Trajectory) -> Self {
-        let Run { end, diagnostics, statistics, state, .. } = run;
+    fn new(run: RunResult, trajectory: Trajectory) -> Self {
+        let RunResult { end, diagnostics, statistics, state, .. } = run;
         Outcome { trajectory, end, state, statistics, diagnostics }
     }
 }
@@ -48,9 +49,9 @@ pub struct Simulation {
     model: CompiledModel,
     sources: Arc<Sources>,
     settings: Settings,
-    inputs: Vec<Input>,
+    inputs: Vec<RecordedInput>,
     /// For callers who integrate the states themselves: without conserved quantities among the unknowns.
-    of_states: Arc<OnceLock<System>>,
+    of_states: Arc<OnceLock<ExecutableSystem>>,
     /// Remarks and warnings of the compilation.
     pub diagnostics: Vec<Diagnostic>,
 }
@@ -61,7 +62,7 @@ impl Simulation {
     /// # Errors
     /// The diagnostics of the first stage that finds something wrong.
     pub fn compile(world: &dyn World, request: &Request) -> Result<Self, Error> {
-        let outcome = deep(|| compile(world, request, &lower::Options::default()));
+        let outcome = deep(|| compile(world, request, &lower::LoweringOptions::default()));
         let sources = Arc::new(outcome.sources);
         match outcome.value {
             Some(model) => {
@@ -218,7 +219,7 @@ impl Simulation {
         }
         self.inputs.retain(|i| i.variable != variable);
         let (times, values) = (Arc::from(times), Arc::from(values));
-        self.inputs.push(Input { variable, times, values, interpolation: between });
+        self.inputs.push(RecordedInput { variable, times, values, interpolation: between });
         Ok(self)
     }
 
@@ -303,7 +304,7 @@ impl Simulation {
         from: Option<&State>,
         mut on_row: impl FnMut(f64, &[f64]) -> ControlFlow<()> + Send,
     ) -> Result<Outcome, Error> {
-        let mut rows = Rows { on_row: &mut on_row, conduct: Conduct::default() };
+        let mut rows = RowCallback { on_row: &mut on_row, conduct: CallbackStatus::default() };
         self.may_run(from)?;
         let run = self.run_into(from, &mut Control::default(), &mut rows)?;
         if let Some(complaint) = rows.conduct.complaint(run.time) {
@@ -340,12 +341,12 @@ impl Simulation {
     }
 
     /// The model with nothing but its states to integrate.
-    pub(super) fn system_of_states(&self) -> &System {
+    pub(super) fn system_of_states(&self) -> &ExecutableSystem {
         let system = &self.model.system;
         if system.integrals.is_empty() {
             return system;
         }
-        let options = lower::Options { conserve: false, ..lower::Options::default() };
+        let options = lower::LoweringOptions { conserve: false, ..lower::LoweringOptions::default() };
         self.of_states.get_or_init(|| lower::lower(system.dae.clone(), &options))
     }
 
@@ -380,8 +381,13 @@ impl Simulation {
     /// # Errors
     /// A callback that panicked.
     #[doc(hidden)]
-    pub fn run_into(&self, from: Option<&State>, control: &mut Control<'_>, sink: &mut dyn Sink) -> Result<Run, Error> {
-        let mut conduct = Conduct::default();
+    pub fn run_into(
+        &self,
+        from: Option<&State>,
+        control: &mut Control<'_>,
+        sink: &mut dyn RowSink,
+    ) -> Result<RunResult, Error> {
+        let mut conduct = CallbackStatus::default();
         let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
         let mut watched = control.progress.as_mut().map(|report| {
             let conduct = &mut conduct;
@@ -404,7 +410,7 @@ impl Simulation {
 
     /// The inputs that have values over time.
     #[doc(hidden)]
-    pub fn given_inputs(&self) -> &[Input] {
+    pub fn given_inputs(&self) -> &[RecordedInput] {
         &self.inputs
     }
 

@@ -1,7 +1,7 @@
 //! Co-simulation: a run that the caller takes from step to step, setting inputs and reading variables in between.
 
 use super::simulation::Simulation;
-use bramah_solve::driver::{self, Driver, Stop};
+use bramah_solve::driver::{self, Driver, EarlyStop};
 use bramah_solve::{End, State, Statistics};
 use bramah_syntax::diag::{Code, Diagnostic, Error};
 
@@ -158,7 +158,7 @@ impl<'a> Stepping<'a> {
         self.changes.clear();
         match moved {
             Ok(()) => Ok(()),
-            Err(Stop { end: End::Terminated(message), .. }) => {
+            Err(EarlyStop { end: End::Terminated(message), .. }) => {
                 self.terminated = Some(message);
                 Ok(())
             }

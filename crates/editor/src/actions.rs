@@ -6,7 +6,7 @@ use lsp_types::TextEdit;
 
 /// A correction of a text.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Correction {
+pub struct QuickFix {
     /// What it does.
     pub title: String,
     /// What changes in the file of the message.
@@ -14,7 +14,7 @@ pub struct Correction {
 }
 
 /// The correction that a message proposes, in the file in which its primary place is.
-pub fn correction(sources: &Sources, diagnostic: &Diagnostic) -> Option<Correction> {
+pub fn correction(sources: &Sources, diagnostic: &Diagnostic) -> Option<QuickFix> {
     let fix = diagnostic.fix.as_ref()?;
     let text = &sources.get(fix.span.file).text;
     let range = lines::range(text, fix.span);
@@ -23,5 +23,5 @@ pub fn correction(sources: &Sources, diagnostic: &Diagnostic) -> Option<Correcti
         (old, "") => format!("Remove `{}`", old.trim()),
         (old, new) => format!("Replace `{old}` by `{new}`"),
     };
-    Some(Correction { title, edit: TextEdit { range, new_text: fix.text.clone() } })
+    Some(QuickFix { title, edit: TextEdit { range, new_text: fix.text.clone() } })
 }

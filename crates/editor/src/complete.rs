@@ -1,9 +1,9 @@
 //! What may be written at a place, found from the words before it: a text that is being written does not parse.
 
-use super::{View, words};
-use bramah_model::resolve::names::{self, Member, Target};
+use super::{DocumentView, words};
+use bramah_model::resolve::names::{self, MemberComponent, NameTarget};
 use bramah_model::resolve::{ClassId, Library};
-use bramah_syntax::ast::{ClassKind, Variability};
+use bramah_syntax::ast::{ClassKind, VariabilityPrefix};
 use bramah_syntax::diag::FileId;
 use bramah_syntax::lexer::lex;
 use bramah_syntax::symbol::Symbol;
@@ -59,15 +59,15 @@ const EXPRESSION_WORDS: [&str; 24] = [
 
 /// The words before a place.
 #[derive(Debug, Default)]
-pub(super) struct Context {
+pub(super) struct CompletionContext {
     /// The word that has been begun.
     pub prefix: String,
     /// `a.b.` before it.
     pub chain: Vec<String>,
     /// The open brackets of the statement, outermost first.
-    pub calls: Vec<Call>,
-    place: Place,
-    section: Section,
+    pub calls: Vec<BracketContext>,
+    place: LexicalRegion,
+    section: CompletionSection,
     /// Nothing of the statement stands before the chain.
     begins: bool,
     /// Nothing of the present argument stands before the chain.
@@ -76,8 +76,8 @@ pub(super) struct Context {
 
 /// An open bracket.
 #[derive(Debug)]
-pub(super) struct Call {
-    head: Head,
+pub(super) struct BracketContext {
+    head: BracketHead,
     /// Commas behind it.
     pub commas: usize,
     /// The name before the `=` of the present argument.
@@ -86,7 +86,7 @@ pub(super) struct Call {
 
 /// What stands before a bracket.
 #[derive(Clone, Debug, PartialEq)]
-enum Head {
+enum BracketHead {
     /// `Type name(`
     Element(Vec<String>, String),
     /// `extends Path(`, `model M = Path(`
@@ -100,7 +100,7 @@ enum Head {
 }
 
 #[derive(Debug, Default, PartialEq)]
-enum Place {
+enum LexicalRegion {
     #[default]
     Code,
     Comment,
@@ -109,23 +109,23 @@ enum Place {
 }
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-enum Section {
+enum CompletionSection {
     #[default]
     Elements,
     Equations,
 }
 
-impl Context {
+impl CompletionContext {
     /// The words before a byte.
-    pub fn at(text: &str, offset: u32) -> Context {
+    pub fn at(text: &str, offset: u32) -> CompletionContext {
         let all = lex(FileId(0), text).tokens;
         let before = all.partition_point(|t| t.start < offset && t.kind != TokenKind::Eof);
         let mut tokens = all[..before].to_vec();
-        let mut context = Context::default();
+        let mut context = CompletionContext::default();
         match tokens.last().copied() {
             Some(last) if last.kind == TokenKind::String && offset < last.end => {
                 tokens.pop();
-                context.place = Place::Text(named_before(text, &tokens));
+                context.place = LexicalRegion::Text(named_before(text, &tokens));
             }
             Some(last) if last.end >= offset && (last.kind == TokenKind::Ident || last.kind.is_keyword()) => {
                 context.prefix = text[last.start as usize..offset as usize].to_owned();
@@ -135,9 +135,9 @@ impl Context {
                 let gap = &text[last.map_or(0, |t| t.end as usize).min(offset as usize)..offset as usize];
                 let line = gap.rsplit('\n').next().unwrap_or("");
                 if line.contains("//") || gap.rfind("/*") > gap.rfind("*/") {
-                    context.place = Place::Comment;
+                    context.place = LexicalRegion::Comment;
                 } else if gap.contains('"') {
-                    context.place = Place::Text(named_before(text, &tokens));
+                    context.place = LexicalRegion::Text(named_before(text, &tokens));
                 }
             }
         }
@@ -158,7 +158,7 @@ impl Context {
             match token.kind {
                 TokenKind::LeftParen => {
                     let head = head(text, &tokens[start..i], self.calls.last().map(|c| &c.head));
-                    self.calls.push(Call { head, commas: 0, named: None });
+                    self.calls.push(BracketContext { head, commas: 0, named: None });
                     argument = i + 1;
                 }
                 TokenKind::LeftBracket | TokenKind::LeftBrace => depth += 1,
@@ -181,18 +181,18 @@ impl Context {
                     self.calls.clear();
                 }
                 TokenKind::Equation | TokenKind::Algorithm => {
-                    self.section = Section::Equations;
+                    self.section = CompletionSection::Equations;
                     start = i + 1;
                 }
                 TokenKind::Then | TokenKind::Loop | TokenKind::Else if self.calls.is_empty() => start = i + 1,
                 TokenKind::Protected | TokenKind::Public => {
-                    self.section = Section::Elements;
+                    self.section = CompletionSection::Elements;
                     start = i + 1;
                 }
                 TokenKind::End if i == start && tokens.get(i + 1).is_some_and(|t| t.kind == TokenKind::Ident) => {
-                    self.section = Section::Elements;
+                    self.section = CompletionSection::Elements;
                 }
-                _ if i == start && token.kind.is_class_word() => self.section = Section::Elements,
+                _ if i == start && token.kind.is_class_word() => self.section = CompletionSection::Elements,
                 _ => {}
             }
         }
@@ -207,23 +207,25 @@ impl Context {
     /// The class whose elements are named in the first `n` open brackets.
     pub fn class_of(&self, library: &mut Library<'_>, scope: ClassId, n: usize) -> Option<ClassId> {
         match &self.calls.get(n.checked_sub(1)?)?.head {
-            Head::Element(path, _) | Head::Type(path) => named(library, scope, path),
-            Head::Function(path) => {
+            BracketHead::Element(path, _) | BracketHead::Type(path) => named(library, scope, path),
+            BracketHead::Function(path) => {
                 let target = meant(library, scope, path)?;
                 names::inside(library, target)
             }
-            Head::Inner(path) => {
+            BracketHead::Inner(path) => {
                 let around = self.class_of(library, scope, n - 1)?;
                 let target = along(library, around, path)?;
                 names::inside(library, target)
             }
-            Head::Connect | Head::Other => None,
+            BracketHead::Connect | BracketHead::Other => None,
         }
     }
 
     /// Whether a modification's arguments are being written, and the present one has just begun.
     fn names_elements(&self) -> bool {
-        let modifies = |c: &Call| matches!(c.head, Head::Element(..) | Head::Type(_) | Head::Inner(_));
+        let modifies = |c: &BracketContext| {
+            matches!(c.head, BracketHead::Element(..) | BracketHead::Type(_) | BracketHead::Inner(_))
+        };
         self.calls.last().is_some_and(modifies) && self.begins_argument
     }
 }
@@ -232,13 +234,13 @@ impl Context {
 pub(super) fn full_name_at(text: &str, offset: u32) -> Option<String> {
     let rest = &text[offset as usize..];
     let end = offset as usize + rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-    let context = Context::at(text, end as u32);
+    let context = CompletionContext::at(text, end as u32);
     let mut parts: Vec<String> = Vec::new();
     if context.names_elements() {
         for call in &context.calls {
             match &call.head {
-                Head::Element(_, name) => parts.push(name.clone()),
-                Head::Inner(path) => parts.extend(path.clone()),
+                BracketHead::Element(_, name) => parts.push(name.clone()),
+                BracketHead::Inner(path) => parts.extend(path.clone()),
                 _ => {}
             }
         }
@@ -249,21 +251,21 @@ pub(super) fn full_name_at(text: &str, offset: u32) -> Option<String> {
 }
 
 /// What may be written at a byte.
-pub fn complete(view: &mut View<'_, '_>, offset: u32) -> Vec<CompletionItem> {
-    let context = Context::at(&view.text, offset);
+pub fn complete(view: &mut DocumentView<'_, '_>, offset: u32) -> Vec<CompletionItem> {
+    let context = CompletionContext::at(&view.text, offset);
     match &context.place {
-        Place::Comment => return Vec::new(),
-        Place::Text(Some(name)) if name == "unit" || name == "displayUnit" => {
+        LexicalRegion::Comment => return Vec::new(),
+        LexicalRegion::Text(Some(name)) if name == "unit" || name == "displayUnit" => {
             return UNITS.iter().map(|u| plain(u, CompletionItemKind::UNIT)).collect();
         }
-        Place::Text(_) => return Vec::new(),
-        Place::Code => {}
+        LexicalRegion::Text(_) => return Vec::new(),
+        LexicalRegion::Code => {}
     }
     let Some(scope) = view.class_at(offset) else { return words_for(&context) };
     if context.names_elements() {
         return arguments(view, &context, scope);
     }
-    let connects = context.calls.last().is_some_and(|c| c.head == Head::Connect);
+    let connects = context.calls.last().is_some_and(|c| c.head == BracketHead::Connect);
     if !context.chain.is_empty() {
         return members(view, &context, scope, connects);
     }
@@ -277,17 +279,17 @@ pub fn complete(view: &mut View<'_, '_>, offset: u32) -> Vec<CompletionItem> {
     found
 }
 
-fn words_for(context: &Context) -> Vec<CompletionItem> {
+fn words_for(context: &CompletionContext) -> Vec<CompletionItem> {
     let words: &[&str] = match (context.begins, context.section) {
-        (true, Section::Elements) => &ELEMENT_WORDS,
-        (true, Section::Equations) => &EQUATION_WORDS,
+        (true, CompletionSection::Elements) => &ELEMENT_WORDS,
+        (true, CompletionSection::Equations) => &EQUATION_WORDS,
         _ => &EXPRESSION_WORDS,
     };
     words.iter().map(|w| plain(w, CompletionItemKind::KEYWORD)).collect()
 }
 
 /// Elements that a modification may name.
-fn arguments(view: &mut View<'_, '_>, context: &Context, scope: ClassId) -> Vec<CompletionItem> {
+fn arguments(view: &mut DocumentView<'_, '_>, context: &CompletionContext, scope: ClassId) -> Vec<CompletionItem> {
     let class = context.class_of(view.library, scope, context.calls.len()).and_then(|class| {
         context.chain.iter().try_fold(class, |class, part| {
             let target = names::element(view.library, class, Symbol::new(part))?;
@@ -309,12 +311,17 @@ fn arguments(view: &mut View<'_, '_>, context: &Context, scope: ClassId) -> Vec<
 }
 
 /// What stands behind a dot.
-fn members(view: &mut View<'_, '_>, context: &Context, scope: ClassId, connects: bool) -> Vec<CompletionItem> {
+fn members(
+    view: &mut DocumentView<'_, '_>,
+    context: &CompletionContext,
+    scope: ClassId,
+    connects: bool,
+) -> Vec<CompletionItem> {
     let Some(target) = meant(view.library, scope, &context.chain) else { return Vec::new() };
     let Some(class) = names::inside(view.library, target) else { return Vec::new() };
-    if matches!(target, Target::Class(_)) {
+    if matches!(target, NameTarget::Class(_)) {
         let mut found = classes(view, class);
-        found.extend(elements(view, class, |m| m.component.prefix.variability == Some(Variability::Constant)));
+        found.extend(elements(view, class, |m| m.component.prefix.variability == Some(VariabilityPrefix::Constant)));
         if let bramah_syntax::ast::ClassBody::Enumeration(Some(literals)) = &view.library.class(class).body {
             found.extend(literals.iter().map(|l| plain(l.name.name.as_str(), CompletionItemKind::ENUM_MEMBER)));
         }
@@ -326,7 +333,7 @@ fn members(view: &mut View<'_, '_>, context: &Context, scope: ClassId, connects:
 }
 
 /// Names that need no dot: elements, those of the classes around, packages at the top.
-fn in_scope(view: &mut View<'_, '_>, scope: ClassId, connects: bool) -> Vec<CompletionItem> {
+fn in_scope(view: &mut DocumentView<'_, '_>, scope: ClassId, connects: bool) -> Vec<CompletionItem> {
     let mut found = elements(view, scope, |m| !connects || m.component.class.parts[0].name != "Real");
     if connects {
         return found;
@@ -336,7 +343,8 @@ fn in_scope(view: &mut View<'_, '_>, scope: ClassId, connects: bool) -> Vec<Comp
         found.extend(classes(view, class));
         around = view.library.parent(class);
         if let Some(outer) = around {
-            found.extend(elements(view, outer, |m| m.component.prefix.variability == Some(Variability::Constant)));
+            found
+                .extend(elements(view, outer, |m| m.component.prefix.variability == Some(VariabilityPrefix::Constant)));
         }
     }
     let top = view.library.top_level();
@@ -346,7 +354,7 @@ fn in_scope(view: &mut View<'_, '_>, scope: ClassId, connects: bool) -> Vec<Comp
     found
 }
 
-fn classes(view: &mut View<'_, '_>, class: ClassId) -> Vec<CompletionItem> {
+fn classes(view: &mut DocumentView<'_, '_>, class: ClassId) -> Vec<CompletionItem> {
     let all = names::classes(view.library, class);
     all.into_iter().map(|id| class_item(view.library, id)).collect()
 }
@@ -372,14 +380,18 @@ fn class_item(library: &Library<'_>, id: ClassId) -> CompletionItem {
     }
 }
 
-fn elements(view: &mut View<'_, '_>, class: ClassId, wanted: impl Fn(&Member<'_>) -> bool) -> Vec<CompletionItem> {
+fn elements(
+    view: &mut DocumentView<'_, '_>,
+    class: ClassId,
+    wanted: impl Fn(&MemberComponent<'_>) -> bool,
+) -> Vec<CompletionItem> {
     elements_that(view, class, |_, m| wanted(m))
 }
 
 fn elements_that(
-    view: &mut View<'_, '_>,
+    view: &mut DocumentView<'_, '_>,
     class: ClassId,
-    wanted: impl Fn(&mut View<'_, '_>, &Member<'_>) -> bool,
+    wanted: impl Fn(&mut DocumentView<'_, '_>, &MemberComponent<'_>) -> bool,
 ) -> Vec<CompletionItem> {
     let all = names::members(view.library, class);
     let mut found: Vec<CompletionItem> = Vec::new();
@@ -391,12 +403,12 @@ fn elements_that(
     found
 }
 
-fn element_item<'a>(library: &mut Library<'a>, member: Member<'a>) -> CompletionItem {
+fn element_item<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> CompletionItem {
     let component = member.component;
-    let parameter = component.prefix.variability == Some(Variability::Parameter);
+    let parameter = component.prefix.variability == Some(VariabilityPrefix::Parameter);
     let kind = match component.prefix.variability {
-        Some(Variability::Parameter) => CompletionItemKind::PROPERTY,
-        Some(Variability::Constant) => CompletionItemKind::CONSTANT,
+        Some(VariabilityPrefix::Parameter) => CompletionItemKind::PROPERTY,
+        Some(VariabilityPrefix::Constant) => CompletionItemKind::CONSTANT,
         _ => CompletionItemKind::VARIABLE,
     };
     let unit = words::attribute(library, member, "unit").map(|u| format!(", in {u}")).unwrap_or_default();
@@ -409,7 +421,7 @@ fn element_item<'a>(library: &mut Library<'a>, member: Member<'a>) -> Completion
     }
 }
 
-fn is_port(view: &mut View<'_, '_>, member: &Member<'_>) -> bool {
+fn is_port(view: &mut DocumentView<'_, '_>, member: &MemberComponent<'_>) -> bool {
     names::type_of(view.library, *member).is_some_and(|class| names::is_connector(view.library, class))
 }
 
@@ -418,7 +430,7 @@ fn plain(label: &str, kind: CompletionItemKind) -> CompletionItem {
 }
 
 /// What dotted words stand for in a class.
-fn meant<'a>(library: &mut Library<'a>, scope: ClassId, path: &[String]) -> Option<Target<'a>> {
+fn meant<'a>(library: &mut Library<'a>, scope: ClassId, path: &[String]) -> Option<NameTarget<'a>> {
     let (first, rest) = path.split_first()?;
     let target = names::lookup(library, scope, Symbol::new(first))?;
     if rest.is_empty() {
@@ -428,7 +440,7 @@ fn meant<'a>(library: &mut Library<'a>, scope: ClassId, path: &[String]) -> Opti
     along(library, class, rest)
 }
 
-fn along<'a>(library: &mut Library<'a>, mut class: ClassId, path: &[String]) -> Option<Target<'a>> {
+fn along<'a>(library: &mut Library<'a>, mut class: ClassId, path: &[String]) -> Option<NameTarget<'a>> {
     let (last, before) = path.split_last()?;
     for part in before {
         let target = names::element(library, class, Symbol::new(part))?;
@@ -489,26 +501,28 @@ fn chain_before(text: &str, tokens: &[Token]) -> (Vec<String>, usize) {
 }
 
 /// What a bracket behind these tokens of a statement belongs to.
-fn head(text: &str, tokens: &[Token], around: Option<&Head>) -> Head {
+fn head(text: &str, tokens: &[Token], around: Option<&BracketHead>) -> BracketHead {
     match tokens.last().map(|t| t.kind) {
-        Some(TokenKind::Connect) => return Head::Connect,
-        Some(TokenKind::Annotation) => return Head::Other,
+        Some(TokenKind::Connect) => return BracketHead::Connect,
+        Some(TokenKind::Annotation) => return BracketHead::Other,
         _ => {}
     }
     let (path, rest) = chain_before(text, tokens);
     if path.is_empty() {
-        return Head::Other;
+        return BracketHead::Other;
     }
-    let modifies = matches!(around, Some(Head::Element(..) | Head::Type(_) | Head::Inner(_)));
+    let modifies = matches!(around, Some(BracketHead::Element(..) | BracketHead::Type(_) | BracketHead::Inner(_)));
     let before = &tokens[..rest];
     match before.last().map(|t| t.kind) {
-        Some(TokenKind::Extends | TokenKind::Constrainedby) => Head::Type(path),
+        Some(TokenKind::Extends | TokenKind::Constrainedby) => BracketHead::Type(path),
         Some(TokenKind::Ident | TokenKind::RightBracket) if path.len() == 1 => {
-            Head::Element(chain_before(text, before).0, path.into_iter().next().unwrap_or_default())
+            BracketHead::Element(chain_before(text, before).0, path.into_iter().next().unwrap_or_default())
         }
-        Some(TokenKind::Equal) if matches!(before, [.., class, _, _] if class.kind.is_class_word()) => Head::Type(path),
+        Some(TokenKind::Equal) if matches!(before, [.., class, _, _] if class.kind.is_class_word()) => {
+            BracketHead::Type(path)
+        }
         Some(TokenKind::LeftParen | TokenKind::Comma | TokenKind::Each | TokenKind::Final) if modifies => {
-            Head::Inner(path)
+            BracketHead::Inner(path)
         }
         Some(TokenKind::Comma) if around.is_none() => {
             let words = tokens.iter().skip_while(|t| t.kind != TokenKind::Ident);
@@ -518,9 +532,9 @@ fn head(text: &str, tokens: &[Token], around: Option<&Head>) -> Head {
             if type_path.is_empty() {
                 type_path = path.clone();
             }
-            Head::Element(type_path, path.into_iter().next().unwrap_or_default())
+            BracketHead::Element(type_path, path.into_iter().next().unwrap_or_default())
         }
-        _ => Head::Function(path),
+        _ => BracketHead::Function(path),
     }
 }
 

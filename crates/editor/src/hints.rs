@@ -1,29 +1,29 @@
 //! Values behind what is written: `V = 10 ml` where the text has an expression or a number in SI units.
 
-use super::View;
+use super::DocumentView;
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
 use bramah_expr::types::Variability;
-use bramah_expr::units::Unit;
+use bramah_expr::units::MeasurementUnit;
 use bramah_model::resolve::ClassId;
-use bramah_syntax::ast::{Argument, ArgumentKind, ElementKind, Expr, Modification};
+use bramah_syntax::ast::{ElementKind, Expr, Modification, ModificationArgument, ModificationArgumentKind};
 use lsp_types::{InlayHint, InlayHintLabel};
 use rustc_hash::FxHashMap;
 
 /// What compiled models say of their parameters, by class and by the parameter's full name.
 #[derive(Clone, Debug, Default)]
-pub struct Facts {
-    models: FxHashMap<String, FxHashMap<String, Value>>,
+pub struct ParameterHints {
+    models: FxHashMap<String, FxHashMap<String, HintValue>>,
 }
 
 #[derive(Clone, Debug)]
-struct Value {
+struct HintValue {
     value: f64,
     unit: String,
     display: String,
 }
 
-impl Facts {
+impl ParameterHints {
     /// Takes the parameters of a model in place of those that it had.
     pub fn learn(&mut self, model: &CompiledModel) {
         let system = &model.system;
@@ -33,7 +33,7 @@ impl Facts {
         let all = known.map(|(i, v)| {
             let value = values[system.layout.var(VarId(i as u32))];
             let text = |u: &Option<Box<str>>| u.as_deref().unwrap_or("").to_owned();
-            (v.name.clone(), Value { value, unit: text(&v.unit), display: text(&v.display_unit) })
+            (v.name.clone(), HintValue { value, unit: text(&v.unit), display: text(&v.display_unit) })
         });
         self.models.insert(model.flat.class.clone(), all.collect());
     }
@@ -44,7 +44,7 @@ impl Facts {
     }
 }
 
-impl Value {
+impl HintValue {
     fn shown(&self, both: bool) -> String {
         let plain = format!("{} {}", bramah_results::number::text(self.value), self.unit).trim().to_owned();
         match self.converted() {
@@ -58,7 +58,7 @@ impl Value {
         if self.display.is_empty() || self.display == self.unit {
             return None;
         }
-        let (from, to) = (Unit::parse(&self.unit).ok()?, Unit::parse(&self.display).ok()?);
+        let (from, to) = (MeasurementUnit::parse(&self.unit).ok()?, MeasurementUnit::parse(&self.display).ok()?);
         let value = from.convert(self.value, &to)?;
         let rounded: f64 = format!("{value:.5e}").parse().ok()?;
         Some(format!("{} {}", bramah_results::number::text(rounded), self.display))
@@ -66,7 +66,7 @@ impl Value {
 }
 
 /// Hints behind the values of parameters in a file.
-pub fn hints(view: &mut View<'_, '_>, facts: &Facts) -> Vec<InlayHint> {
+pub fn hints(view: &mut DocumentView<'_, '_>, facts: &ParameterHints) -> Vec<InlayHint> {
     let mut found = Vec::new();
     for id in view.classes.clone() {
         of_class(view, id, facts, &mut found);
@@ -74,7 +74,7 @@ pub fn hints(view: &mut View<'_, '_>, facts: &Facts) -> Vec<InlayHint> {
     found
 }
 
-fn of_class(view: &View<'_, '_>, id: ClassId, facts: &Facts, found: &mut Vec<InlayHint>) {
+fn of_class(view: &DocumentView<'_, '_>, id: ClassId, facts: &ParameterHints, found: &mut Vec<InlayHint>) {
     let Some(values) = facts.models.get(&view.library.full_name(id)) else { return };
     let Some(body) = bramah_model::resolve::names::body(view.library.class(id)) else { return };
     for element in &body.elements {
@@ -92,8 +92,8 @@ fn of_class(view: &View<'_, '_>, id: ClassId, facts: &Facts, found: &mut Vec<Inl
 }
 
 fn modification(
-    view: &View<'_, '_>,
-    values: &FxHashMap<String, Value>,
+    view: &DocumentView<'_, '_>,
+    values: &FxHashMap<String, HintValue>,
     name: &str,
     modification: Option<&Modification>,
     found: &mut Vec<InlayHint>,
@@ -106,20 +106,20 @@ fn modification(
 }
 
 fn argument(
-    view: &View<'_, '_>,
-    values: &FxHashMap<String, Value>,
+    view: &DocumentView<'_, '_>,
+    values: &FxHashMap<String, HintValue>,
     around: &str,
-    argument: &Argument,
+    argument: &ModificationArgument,
     found: &mut Vec<InlayHint>,
 ) {
-    if let ArgumentKind::Modify { path, modification: m, .. } = &argument.kind {
+    if let ModificationArgumentKind::Modify { path, modification: m, .. } = &argument.kind {
         let name = if around.is_empty() { path.dotted() } else { format!("{around}.{}", path.dotted()) };
         modification(view, values, &name, m.as_ref(), found);
     }
 }
 
 /// A number in its own unit needs none.
-fn hint(view: &View<'_, '_>, value: &Value, written: &Expr, found: &mut Vec<InlayHint>) {
+fn hint(view: &DocumentView<'_, '_>, value: &HintValue, written: &Expr, found: &mut Vec<InlayHint>) {
     let is_number = written.as_number().is_some();
     if is_number && value.unit.is_empty() || written.span.file != view.file {
         return;

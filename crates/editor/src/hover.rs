@@ -1,26 +1,26 @@
 //! What is said under the pointer: declaration, unit, value in the circuit, documentation.
 
-use super::hints::Facts;
+use super::hints::ParameterHints;
 use super::navigate::occurrence_at;
-use super::{View, words};
-use bramah_model::resolve::names::Target;
+use super::{DocumentView, words};
+use bramah_model::resolve::names::NameTarget;
 use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind};
 
 /// What the name at a byte stands for.
-pub fn hover(view: &mut View<'_, '_>, offset: u32, facts: &Facts) -> Option<Hover> {
+pub fn hover(view: &mut DocumentView<'_, '_>, offset: u32, facts: &ParameterHints) -> Option<Hover> {
     let occurrence = occurrence_at(view, offset)?;
     let target = occurrence.target?;
     let mut text = match target {
-        Target::Class(id) => code(&words::class_line(view.library, id)),
-        Target::Component(member) => {
+        NameTarget::Class(id) => code(&words::class_line(view.library, id)),
+        NameTarget::Component(member) => {
             let mut line = words::declaration(view.library, member.component);
             if let Some(unit) = words::attribute(view.library, member, "unit") {
                 line.push_str(&format!("  // in {unit}"));
             }
             code(&line)
         }
-        Target::Literal(id, literal) => code(&format!("{}.{}", view.library.full_name(id), literal.name.name)),
-        Target::Iterator(ident) => code(&format!("for {}", ident.name)),
+        NameTarget::Literal(id, literal) => code(&format!("{}.{}", view.library.full_name(id), literal.name.name)),
+        NameTarget::Iterator(ident) => code(&format!("for {}", ident.name)),
     };
     if let Some(said) = words::description(view.library, target) {
         text.push_str(said);
@@ -30,7 +30,7 @@ pub fn hover(view: &mut View<'_, '_>, offset: u32, facts: &Facts) -> Option<Hove
     if let Some(value) = path_at(view, offset).and_then(|path| facts.value(&model, &path)) {
         text.push_str(&format!("\nHere `{value}`\n"));
     }
-    if let Target::Class(id) = target
+    if let NameTarget::Class(id) = target
         && let Some(html) = words::documentation(view.library, id)
     {
         text.push_str(&format!("\n{}\n", words::markdown(html)));
@@ -44,6 +44,6 @@ fn code(line: &str) -> String {
 }
 
 /// The full name of the element at a byte as the circuit has it: of `V` in `pump(V = 1)`, `pump.V`.
-fn path_at(view: &mut View<'_, '_>, offset: u32) -> Option<String> {
+fn path_at(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<String> {
     super::complete::full_name_at(&view.text, offset)
 }

@@ -17,14 +17,14 @@ mod tests;
 pub mod tokens;
 mod words;
 
-use bramah_model::resolve::{ClassId, Library, Trees, nested_classes};
-use bramah_model::shipped::Shipped;
+use bramah_model::resolve::{ClassId, Library, SyntaxArena, nested_classes};
+use bramah_model::shipped::ShippedWorld;
 use bramah_syntax::diag::{FileId, Span};
 use bramah_syntax::world::World;
 use std::path::{Path, PathBuf};
 
 /// What one look at texts needs.
-pub struct Texts<'w> {
+pub struct EditorWorkspace<'w> {
     /// The files, with those open in the editor laid over them.
     pub world: &'w dyn World,
     /// Folders with further packages.
@@ -32,7 +32,7 @@ pub struct Texts<'w> {
 }
 
 /// A file in the library around it.
-pub struct View<'l, 'a> {
+pub struct DocumentView<'l, 'a> {
     /// All classes that can be named.
     pub library: &'l mut Library<'a>,
     /// The classes that stand in the file, without those inside them.
@@ -41,12 +41,12 @@ pub struct View<'l, 'a> {
     pub file: FileId,
     /// The text.
     pub text: String,
-    lines: lines::Lines,
+    lines: lines::LineIndex,
 }
 
-impl Texts<'_> {
+impl EditorWorkspace<'_> {
     /// Looks at a file of the user, or one that ships (a relative path). `None` where it cannot be read.
-    pub fn look<T>(&self, path: &Path, act: impl FnOnce(View<'_, '_>) -> T) -> Option<T> {
+    pub fn look<T>(&self, path: &Path, act: impl FnOnce(DocumentView<'_, '_>) -> T) -> Option<T> {
         self.with_library(|library, texts| {
             let text = texts.read(path)?;
             let added = if is_shipped(path) {
@@ -62,26 +62,26 @@ impl Texts<'_> {
             };
             let found = library.sources.iter().position(|s| s.path == shown);
             let file = FileId(u32::try_from(found?).ok()?);
-            let lines = lines::Lines::new(&text);
-            Some(act(View { library, classes, file, text, lines }))
+            let lines = lines::LineIndex::new(&text);
+            Some(act(DocumentView { library, classes, file, text, lines }))
         })
     }
 
     /// A library with the folders of the user and what ships.
-    fn with_library<T>(&self, act: impl for<'a> FnOnce(&mut Library<'a>, &Texts<'a>) -> T) -> T {
-        let (trees, shipped) = (Trees::new(), Shipped);
+    fn with_library<T>(&self, act: impl for<'a> FnOnce(&mut Library<'a>, &EditorWorkspace<'a>) -> T) -> T {
+        let (trees, shipped) = (SyntaxArena::new(), ShippedWorld);
         let own = self.libraries.iter().map(|l| (self.world, l.clone()));
-        let roots = own.chain(Shipped::roots().map(|r| (&shipped as &dyn World, r))).collect();
+        let roots = own.chain(ShippedWorld::roots().map(|r| (&shipped as &dyn World, r))).collect();
         act(&mut Library::new(&trees, roots), self)
     }
 
     /// The text of a file of the user, or of one that ships.
     pub fn read(&self, path: &Path) -> Option<String> {
-        if is_shipped(path) { Shipped.read(path).ok() } else { self.world.read(path).ok() }
+        if is_shipped(path) { ShippedWorld.read(path).ok() } else { self.world.read(path).ok() }
     }
 }
 
-impl View<'_, '_> {
+impl DocumentView<'_, '_> {
     /// Where a byte stands.
     pub fn position(&self, offset: u32) -> lsp_types::Position {
         self.lines.position(&self.text, offset)
@@ -118,7 +118,8 @@ pub fn is_shipped(path: &Path) -> bool {
 
 /// The full name of the class in a file that ships.
 fn dotted(path: &Path) -> String {
-    let below = Shipped::roots().into_iter().rev().find_map(|root| path.strip_prefix(root).ok().map(Path::to_path_buf));
+    let below =
+        ShippedWorld::roots().into_iter().rev().find_map(|root| path.strip_prefix(root).ok().map(Path::to_path_buf));
     let below = below.unwrap_or_else(|| path.to_path_buf()).with_extension("");
     let parts = below.components().map(|c| c.as_os_str().to_string_lossy().into_owned());
     parts.filter(|p| p != "package").collect::<Vec<_>>().join(".")

@@ -5,13 +5,13 @@ use lsp_types::{Position, Range};
 
 /// First byte of each line of a text, for many places in it.
 #[derive(Clone, Debug)]
-pub struct Lines(Vec<u32>);
+pub struct LineIndex(Vec<u32>);
 
-impl Lines {
+impl LineIndex {
     /// Finds the lines of a text.
-    pub fn new(text: &str) -> Lines {
+    pub fn new(text: &str) -> LineIndex {
         let breaks = text.bytes().enumerate().filter(|(_, b)| *b == b'\n');
-        Lines(std::iter::once(0).chain(breaks.map(|(i, _)| i as u32 + 1)).collect())
+        LineIndex(std::iter::once(0).chain(breaks.map(|(i, _)| i as u32 + 1)).collect())
     }
 
     /// Where a byte of the same text stands; one beyond the end stands at the end.
@@ -33,7 +33,7 @@ impl Lines {
 
 /// Where a byte stands; one beyond the end stands at the end.
 pub fn position(text: &str, offset: u32) -> Position {
-    Lines::new(text).position(text, offset)
+    LineIndex::new(text).position(text, offset)
 }
 
 /// The byte at a place; one beyond the end of a line stands at its end.
@@ -59,7 +59,7 @@ pub fn offset(text: &str, position: Position) -> u32 {
 
 /// The range of a span.
 pub fn range(text: &str, span: Span) -> Range {
-    Lines::new(text).range(text, span)
+    LineIndex::new(text).range(text, span)
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! What is said of a file: every model in it goes the way of `check`.
 
-use super::actions::{Correction, correction};
-use super::hints::Facts;
-use super::{Texts, is_shipped, lines};
+use super::actions::{QuickFix, correction};
+use super::hints::ParameterHints;
+use super::{EditorWorkspace, is_shipped, lines};
 use bramah_circuit::compiled::compile;
 use bramah_model::compile::{Request, runnable};
 use bramah_model::resolve::{Library, names};
-use bramah_solve::lower::Options;
+use bramah_solve::lower::LoweringOptions;
 use bramah_syntax::diag::{Code, Diagnostic, FileId, Severity, Sources};
 use lsp_types::{DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range, Uri};
 use std::path::{Path, PathBuf};
@@ -16,17 +16,17 @@ const MOST_MODELS: usize = 12;
 
 /// A message in a file, with the correction it proposes.
 #[derive(Clone, Debug)]
-pub struct Message {
+pub struct FileDiagnostic {
     /// The file.
     pub path: PathBuf,
     /// As editors know it.
     pub diagnostic: lsp_types::Diagnostic,
     /// The change of the text that it proposes.
-    pub correction: Option<Correction>,
+    pub correction: Option<QuickFix>,
 }
 
 /// What the parser says.
-pub fn of_syntax(path: &Path, text: &str) -> Vec<Message> {
+pub fn of_syntax(path: &Path, text: &str) -> Vec<FileDiagnostic> {
     let mut sources = Sources::default();
     let file = sources.add(path.display().to_string(), text);
     let parsed = bramah_syntax::parse(file, text);
@@ -35,29 +35,29 @@ pub fn of_syntax(path: &Path, text: &str) -> Vec<Message> {
 
 /// What the pipeline says of the models in a file, in turn; `go_on` is asked before each.
 pub fn of_models(
-    texts: &Texts<'_>,
+    texts: &EditorWorkspace<'_>,
     path: &Path,
     link: &dyn Fn(&Path) -> Option<Uri>,
-    facts: &mut Facts,
+    facts: &mut ParameterHints,
     go_on: &dyn Fn() -> bool,
-) -> Vec<Message> {
+) -> Vec<FileDiagnostic> {
     let request = Request { source: path.to_path_buf(), libraries: texts.libraries.to_vec(), ..Request::default() };
     let names = runnable(texts.world, &request).unwrap_or_default();
-    let mut found: Vec<Message> = Vec::new();
+    let mut found: Vec<FileDiagnostic> = Vec::new();
     for name in names.into_iter().take(MOST_MODELS).map(|r| r.class) {
         if !go_on() {
             return found;
         }
         let one = Request { model: Some(name.clone()), ..request.clone() };
-        let outcome = compile(texts.world, &one, &Options::INTERPRETED);
+        let outcome = compile(texts.world, &one, &LoweringOptions::INTERPRETED);
         if let Some(model) = &outcome.value {
             facts.learn(model);
         }
-        let unsure = outcome.diagnostics.iter().any(|d| hangs_on_use(d.code, Ports::Flows));
-        let ports = if unsure { ports(texts, path, &name) } else { Ports::None };
+        let unsure = outcome.diagnostics.iter().any(|d| hangs_on_use(d.code, ConnectorKind::Flows));
+        let ports = if unsure { ports(texts, path, &name) } else { ConnectorKind::None };
         for diagnostic in outcome.diagnostics.iter().filter(|d| !hangs_on_use(d.code, ports)) {
             let Some(message) = message(&outcome.sources, diagnostic, path, link) else { continue };
-            let same = |m: &Message| m.path == message.path && m.diagnostic == message.diagnostic;
+            let same = |m: &FileDiagnostic| m.path == message.path && m.diagnostic == message.diagnostic;
             if !is_shipped(&message.path) && !found.iter().any(same) {
                 found.push(message);
             }
@@ -68,7 +68,7 @@ pub fn of_models(
 
 /// What a class is joined by where it is used.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Ports {
+enum ConnectorKind {
     None,
     /// Inputs and outputs.
     Signals,
@@ -76,34 +76,39 @@ enum Ports {
     Flows,
 }
 
-fn ports(texts: &Texts<'_>, path: &Path, name: &str) -> Ports {
+fn ports(texts: &EditorWorkspace<'_>, path: &Path, name: &str) -> ConnectorKind {
     let found = texts.look(path, |view| {
         let id = view.library.find(name)?;
-        let kind = |m: names::Member<'_>, library: &mut Library<'_>| {
+        let kind = |m: names::MemberComponent<'_>, library: &mut Library<'_>| {
             let class = names::type_of(library, m).filter(|c| names::is_connector(library, *c));
-            class.map_or(Ports::None, |class| {
+            class.map_or(ConnectorKind::None, |class| {
                 let flows = names::members(library, class).iter().any(|m| m.component.prefix.flow);
-                if flows { Ports::Flows } else { Ports::Signals }
+                if flows { ConnectorKind::Flows } else { ConnectorKind::Signals }
             })
         };
         names::members(view.library, id).into_iter().map(|m| kind(m, view.library)).max()
     });
-    found.flatten().unwrap_or(Ports::None)
+    found.flatten().unwrap_or(ConnectorKind::None)
 }
 
 /// What is said only because ports of a component are open: its use decides.
-fn hangs_on_use(code: Code, ports: Ports) -> bool {
+fn hangs_on_use(code: Code, ports: ConnectorKind) -> bool {
     let id = code.id();
     let structure = code == Code::OpenPort || id.starts_with("E3") || id.starts_with("E4");
     let start = matches!(code, Code::InitialUnder | Code::IndexReduction | Code::AutomaticInner | Code::NoInput);
-    ports == Ports::Flows && structure || ports >= Ports::Signals && start
+    ports == ConnectorKind::Flows && structure || ports >= ConnectorKind::Signals && start
 }
 
 fn no_link(_: &Path) -> Option<Uri> {
     None
 }
 
-fn message(sources: &Sources, d: &Diagnostic, asked: &Path, link: &dyn Fn(&Path) -> Option<Uri>) -> Option<Message> {
+fn message(
+    sources: &Sources,
+    d: &Diagnostic,
+    asked: &Path,
+    link: &dyn Fn(&Path) -> Option<Uri>,
+) -> Option<FileDiagnostic> {
     // a place in the file asked about, if there is one
     let shown = asked.display().to_string();
     let primary = d.labels.iter().find(|l| sources.get(l.span.file).path == shown).or(d.labels.first());
@@ -126,7 +131,7 @@ fn message(sources: &Sources, d: &Diagnostic, asked: &Path, link: &dyn Fn(&Path)
             related(sources, l.span.file, lines::range(&sources.get(l.span.file).text, l.span), &l.text, link)
         })
         .collect();
-    Some(Message {
+    Some(FileDiagnostic {
         correction: correction(sources, d)
             .filter(|_| d.fix.as_ref().is_some_and(|f| sources.get(f.span.file).path == path.display().to_string())),
         path,

@@ -1,8 +1,8 @@
 //! Where a name is declared, where it is used, and what changes when it is renamed.
 
-use super::occurrences::{self, Occurrence};
-use super::{Texts, View, is_shipped, lines};
-use bramah_model::resolve::names::{self, Target};
+use super::occurrences::{self, NameOccurrence};
+use super::{DocumentView, EditorWorkspace, is_shipped, lines};
+use bramah_model::resolve::names::{self, NameTarget};
 use bramah_model::resolve::{ClassId, Library};
 use bramah_syntax::ast::Ident;
 use bramah_syntax::diag::Span;
@@ -14,18 +14,18 @@ use std::path::{Path, PathBuf};
 
 /// A range in a file. Relative paths ship with bramah.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Place {
+pub struct FileRange {
     /// The file.
     pub path: PathBuf,
     /// First line and unit, last line and unit.
     pub range: (u32, u32, u32, u32),
 }
 
-impl Place {
-    fn of(library: &Library<'_>, span: Span) -> Place {
+impl FileRange {
+    fn of(library: &Library<'_>, span: Span) -> FileRange {
         let source = library.sources.get(span.file);
         let Range { start, end } = lines::range(&source.text, span);
-        Place { path: PathBuf::from(&source.path), range: (start.line, start.character, end.line, end.character) }
+        FileRange { path: PathBuf::from(&source.path), range: (start.line, start.character, end.line, end.character) }
     }
 
     /// As editors say it.
@@ -36,41 +36,41 @@ impl Place {
 }
 
 /// The name at a byte.
-pub fn occurrence_at<'a>(view: &mut View<'_, 'a>, offset: u32) -> Option<Occurrence<'a>> {
+pub fn occurrence_at<'a>(view: &mut DocumentView<'_, 'a>, offset: u32) -> Option<NameOccurrence<'a>> {
     let file = view.file;
     let at = |ident: &Ident| ident.span.file == file && ident.span.start <= offset && offset <= ident.span.end;
-    let mut found: Vec<Occurrence<'a>> =
+    let mut found: Vec<NameOccurrence<'a>> =
         view.classes.clone().into_iter().flat_map(|id| occurrences::of_class(view.library, id, &at)).collect();
     found.pop()
 }
 
 /// The identifier that declares something.
-pub fn declared_at(library: &Library<'_>, target: Target<'_>) -> Ident {
+pub fn declared_at(library: &Library<'_>, target: NameTarget<'_>) -> Ident {
     match target {
-        Target::Class(id) => library.class(id).name,
-        Target::Component(member) => member.component.name,
-        Target::Literal(_, literal) => literal.name,
-        Target::Iterator(ident) => ident,
+        NameTarget::Class(id) => library.class(id).name,
+        NameTarget::Component(member) => member.component.name,
+        NameTarget::Literal(_, literal) => literal.name,
+        NameTarget::Iterator(ident) => ident,
     }
 }
 
 /// Where the name at a byte is declared.
-pub fn definition(view: &mut View<'_, '_>, offset: u32) -> Option<Place> {
+pub fn definition(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<FileRange> {
     let target = occurrence_at(view, offset)?.target?;
-    Some(Place::of(view.library, declared_at(view.library, target).span))
+    Some(FileRange::of(view.library, declared_at(view.library, target).span))
 }
 
 /// Where the type of the component at a byte is declared.
-pub fn type_definition(view: &mut View<'_, '_>, offset: u32) -> Option<Place> {
+pub fn type_definition(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<FileRange> {
     let target = occurrence_at(view, offset)?.target?;
     let class = names::inside(view.library, target)?;
-    Some(Place::of(view.library, view.library.class(class).name.span))
+    Some(FileRange::of(view.library, view.library.class(class).name.span))
 }
 
 /// A declaration found again in another look at the texts, and its word.
-pub struct Declared {
+pub struct DeclarationSite {
     /// Where it is declared.
-    pub place: Place,
+    pub place: FileRange,
     /// The same as a byte of the file.
     start: u32,
     /// The word.
@@ -82,14 +82,14 @@ pub struct Declared {
 }
 
 /// What is declared under the name at a byte.
-pub fn declared(view: &mut View<'_, '_>, offset: u32) -> Option<Declared> {
+pub fn declared(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<DeclarationSite> {
     let target = occurrence_at(view, offset)?.target?;
     let ident = declared_at(view.library, target);
-    let place = Place::of(view.library, ident.span);
+    let place = FileRange::of(view.library, ident.span);
     let name = ident.name.as_str().to_owned();
-    let own_file = matches!(target, Target::Class(id) if has_own_file(view.library, id, &place.path));
-    let local = matches!(target, Target::Iterator(_));
-    Some(Declared { place, start: ident.span.start, name, own_file, local })
+    let own_file = matches!(target, NameTarget::Class(id) if has_own_file(view.library, id, &place.path));
+    let local = matches!(target, NameTarget::Iterator(_));
+    Some(DeclarationSite { place, start: ident.span.start, name, own_file, local })
 }
 
 /// Whether a class stands in no other one of its file, and the file, or the folder of a package, has its name.
@@ -102,19 +102,19 @@ fn has_own_file(library: &Library<'_>, id: ClassId, path: &Path) -> bool {
 }
 
 /// The class in which the name at a byte is declared, where it has an element of another name already.
-pub fn class_with(view: &mut View<'_, '_>, offset: u32, name: &str) -> Option<String> {
+pub fn class_with(view: &mut DocumentView<'_, '_>, offset: u32, name: &str) -> Option<String> {
     let owner = match occurrence_at(view, offset)?.target? {
-        Target::Class(id) => view.library.parent(id)?,
-        Target::Component(member) => member.owner,
-        Target::Literal(id, _) => id,
-        Target::Iterator(_) => return None,
+        NameTarget::Class(id) => view.library.parent(id)?,
+        NameTarget::Component(member) => member.owner,
+        NameTarget::Literal(id, _) => id,
+        NameTarget::Iterator(_) => return None,
     };
     names::element(view.library, owner, Symbol::new(name))?;
     Some(view.library.full_name(owner))
 }
 
 /// All uses of a declaration in some files of the user, and the declaration itself where it is in one of them.
-pub fn references(texts: &Texts<'_>, files: &[PathBuf], wanted: &Declared) -> Vec<Place> {
+pub fn references(texts: &EditorWorkspace<'_>, files: &[PathBuf], wanted: &DeclarationSite) -> Vec<FileRange> {
     let mut found = BTreeSet::new();
     texts.with_library(|library, texts| {
         for id in all_classes(library, texts, files, &wanted.name) {
@@ -126,7 +126,7 @@ pub fn references(texts: &Texts<'_>, files: &[PathBuf], wanted: &Declared) -> Ve
                 let declared = declared_at(library, target);
                 let path = &library.sources.get(declared.span.file).path;
                 if declared.span.start == wanted.start && Path::new(path) == wanted.place.path {
-                    found.insert(Place::of(library, occurrence.ident.span));
+                    found.insert(FileRange::of(library, occurrence.ident.span));
                 }
             }
         }
@@ -135,7 +135,12 @@ pub fn references(texts: &Texts<'_>, files: &[PathBuf], wanted: &Declared) -> Ve
 }
 
 /// The classes of the files in which a word occurs; packages as wholes, so that every file is entered once.
-fn all_classes<'a>(library: &mut Library<'a>, texts: &Texts<'a>, files: &[PathBuf], word: &str) -> Vec<ClassId> {
+fn all_classes<'a>(
+    library: &mut Library<'a>,
+    texts: &EditorWorkspace<'a>,
+    files: &[PathBuf],
+    word: &str,
+) -> Vec<ClassId> {
     let mut found = Vec::new();
     let mut packages = BTreeSet::new();
     for path in files {

@@ -1,19 +1,20 @@
 //! Every name of a text with what it stands for: what definition, references, renaming and colours are made of.
 
-use bramah_model::resolve::names::{self, Target};
+use bramah_model::resolve::names::{self, NameTarget};
 use bramah_model::resolve::{ClassId, Library};
 use bramah_syntax::ast::{
-    Argument, ArgumentKind, Class, ClassBody, Component, ElementKind, Equation, EquationKind, Expr, ExprKind, Extends,
-    Ident, Import, Iterator, Modification, Path, Reference, Statement, StatementKind, Subscript,
+    Class, ClassBody, ComponentDeclaration, ComponentReference, ElementKind, Equation, EquationKind, Expr, ExprKind,
+    ExtendsClause, ForIndex, Ident, Import, Modification, ModificationArgument, ModificationArgumentKind, Path,
+    Statement, StatementKind, Subscript,
 };
 
 /// A name at a place.
 #[derive(Clone, Copy, Debug)]
-pub struct Occurrence<'a> {
+pub struct NameOccurrence<'a> {
     /// The word and where it stands.
     pub ident: Ident,
     /// What it stands for; `None` for built-in names and for what is not there.
-    pub target: Option<Target<'a>>,
+    pub target: Option<NameTarget<'a>>,
     /// Whether it is declared here.
     pub declares: bool,
     /// The class around it.
@@ -21,14 +22,22 @@ pub struct Occurrence<'a> {
 }
 
 /// The names in a class that are wanted, in the order of the syntax tree.
-pub fn of_class<'a>(library: &mut Library<'a>, id: ClassId, wanted: &dyn Fn(&Ident) -> bool) -> Vec<Occurrence<'a>> {
-    let mut walk = Walk { library, wanted, found: Vec::new(), locals: Vec::new() };
+pub fn of_class<'a>(
+    library: &mut Library<'a>,
+    id: ClassId,
+    wanted: &dyn Fn(&Ident) -> bool,
+) -> Vec<NameOccurrence<'a>> {
+    let mut walk = OccurrenceFinder { library, wanted, found: Vec::new(), locals: Vec::new() };
     walk.class(id);
     walk.found
 }
 
 /// The names behind `within` in the file of a class.
-pub fn of_within<'a>(library: &mut Library<'a>, id: ClassId, wanted: &dyn Fn(&Ident) -> bool) -> Vec<Occurrence<'a>> {
+pub fn of_within<'a>(
+    library: &mut Library<'a>,
+    id: ClassId,
+    wanted: &dyn Fn(&Ident) -> bool,
+) -> Vec<NameOccurrence<'a>> {
     let file = library.class(id).span.file;
     let text = &library.sources.get(file).text;
     let head = text.find(';').map_or("", |end| &text[..=end]);
@@ -36,51 +45,51 @@ pub fn of_within<'a>(library: &mut Library<'a>, id: ClassId, wanted: &dyn Fn(&Id
     let mut found = Vec::new();
     for (i, part) in path.parts.iter().enumerate().filter(|(_, part)| wanted(part)) {
         let parts: Vec<_> = path.parts[..=i].iter().map(|p| p.name).collect();
-        let target = names::named(library, None, &parts, true).map(Target::Class);
-        found.push(Occurrence { ident: *part, target, declares: false, scope: id });
+        let target = names::named(library, None, &parts, true).map(NameTarget::Class);
+        found.push(NameOccurrence { ident: *part, target, declares: false, scope: id });
     }
     found
 }
 
 /// Whose elements a modifier names; made out only where it is asked for.
 #[derive(Clone, Copy)]
-enum Modified<'a, 'c> {
+enum ModifierTarget<'a, 'c> {
     /// Those of a class, named in another.
     Type(ClassId, &'a Path),
     /// Those of an element of what is modified around it.
-    Element(&'c Modified<'a, 'c>, &'a Path),
+    Element(&'c ModifierTarget<'a, 'c>, &'a Path),
     /// Those of a class that has been found.
     Class(ClassId),
 }
 
-struct Walk<'l, 'a> {
+struct OccurrenceFinder<'l, 'a> {
     library: &'l mut Library<'a>,
     wanted: &'l dyn Fn(&Ident) -> bool,
-    found: Vec<Occurrence<'a>>,
+    found: Vec<NameOccurrence<'a>>,
     /// Variables of the loops around.
     locals: Vec<Ident>,
 }
 
-impl<'a> Walk<'_, 'a> {
-    fn add(&mut self, scope: ClassId, ident: Ident, target: impl FnOnce(&mut Self) -> Option<Target<'a>>) {
+impl<'a> OccurrenceFinder<'_, 'a> {
+    fn add(&mut self, scope: ClassId, ident: Ident, target: impl FnOnce(&mut Self) -> Option<NameTarget<'a>>) {
         if (self.wanted)(&ident) {
             let target = target(self);
-            self.found.push(Occurrence { ident, target, declares: false, scope });
+            self.found.push(NameOccurrence { ident, target, declares: false, scope });
         }
     }
 
-    fn declare(&mut self, scope: ClassId, ident: Ident, target: Target<'a>) {
+    fn declare(&mut self, scope: ClassId, ident: Ident, target: NameTarget<'a>) {
         if (self.wanted)(&ident) {
-            self.found.push(Occurrence { ident, target: Some(target), declares: true, scope });
+            self.found.push(NameOccurrence { ident, target: Some(target), declares: true, scope });
         }
     }
 
     fn class(&mut self, id: ClassId) {
         let class: &'a Class = self.library.class(id);
-        self.declare(id, class.name, Target::Class(id));
+        self.declare(id, class.name, NameTarget::Class(id));
         if let Some(constraint) = &class.constraint {
             self.path(id, &constraint.path);
-            self.modification(id, Modified::Type(id, &constraint.path), constraint.modification.as_ref());
+            self.modification(id, ModifierTarget::Type(id, &constraint.path), constraint.modification.as_ref());
         }
         match &class.body {
             ClassBody::Long(body) => {
@@ -98,11 +107,11 @@ impl<'a> Walk<'_, 'a> {
                 let around = self.library.parent(id).unwrap_or(id);
                 self.path(around, base);
                 self.subscripts(around, subscripts);
-                self.modification(around, Modified::Type(around, base), modification.as_ref());
+                self.modification(around, ModifierTarget::Type(around, base), modification.as_ref());
             }
             ClassBody::Enumeration(literals) => {
                 for literal in literals.iter().flatten() {
-                    self.declare(id, literal.name, Target::Literal(id, literal));
+                    self.declare(id, literal.name, NameTarget::Literal(id, literal));
                 }
             }
             ClassBody::Derivative { function, .. } => self.path(id, function),
@@ -116,16 +125,16 @@ impl<'a> Walk<'_, 'a> {
         let mut span = class.span;
         span.start = span.end.saturating_sub(length);
         if span.start > class.name.span.end && self.library.sources.text(span) == name.as_str() {
-            self.declare(id, Ident { name, span }, Target::Class(id));
+            self.declare(id, Ident { name, span }, NameTarget::Class(id));
         }
     }
 
     fn element(&mut self, scope: ClassId, kind: &'a ElementKind) {
         match kind {
             ElementKind::Import(import) => self.import(scope, import),
-            ElementKind::Extends(Extends { base, modification }) => {
+            ElementKind::Extends(ExtendsClause { base, modification }) => {
                 self.path(scope, base);
-                self.modification(scope, Modified::Type(scope, base), modification.as_ref());
+                self.modification(scope, ModifierTarget::Type(scope, base), modification.as_ref());
             }
             ElementKind::Class(class) => {
                 let id = self.library.enter(class, Some(scope));
@@ -138,7 +147,7 @@ impl<'a> Walk<'_, 'a> {
         }
     }
 
-    fn declared(&mut self, scope: ClassId, component: &'a Component) {
+    fn declared(&mut self, scope: ClassId, component: &'a ComponentDeclaration) {
         if (self.wanted)(&component.name)
             && let Some(target) = names::element(self.library, scope, component.name.name)
         {
@@ -147,15 +156,15 @@ impl<'a> Walk<'_, 'a> {
     }
 
     /// All of a component but its name.
-    fn component(&mut self, scope: ClassId, component: &'a Component) {
+    fn component(&mut self, scope: ClassId, component: &'a ComponentDeclaration) {
         self.path(scope, &component.class);
         self.subscripts(scope, &component.subscripts);
-        let modified = Modified::Type(scope, &component.class);
+        let modified = ModifierTarget::Type(scope, &component.class);
         self.modification(scope, modified, component.modification.as_ref());
         component.condition.iter().for_each(|e| self.expression(scope, e));
         if let Some(constraint) = &component.constraint {
             self.path(scope, &constraint.path);
-            self.modification(scope, Modified::Type(scope, &constraint.path), constraint.modification.as_ref());
+            self.modification(scope, ModifierTarget::Type(scope, &constraint.path), constraint.modification.as_ref());
         }
     }
 
@@ -166,7 +175,7 @@ impl<'a> Walk<'_, 'a> {
                 self.dotted(scope, path, true);
                 for name in names {
                     let parts: Vec<_> = path.parts.iter().map(|p| p.name).chain([name.name]).collect();
-                    self.add(scope, *name, |w| names::named(w.library, None, &parts, true).map(Target::Class));
+                    self.add(scope, *name, |w| names::named(w.library, None, &parts, true).map(NameTarget::Class));
                 }
             }
         }
@@ -181,12 +190,12 @@ impl<'a> Walk<'_, 'a> {
         for (i, part) in path.parts.iter().enumerate() {
             self.add(scope, *part, |w| {
                 let parts: Vec<_> = path.parts[..=i].iter().map(|p| p.name).collect();
-                names::named(w.library, Some(scope), &parts, global).map(Target::Class)
+                names::named(w.library, Some(scope), &parts, global).map(NameTarget::Class)
             });
         }
     }
 
-    fn modification(&mut self, scope: ClassId, of: Modified<'a, '_>, modification: Option<&'a Modification>) {
+    fn modification(&mut self, scope: ClassId, of: ModifierTarget<'a, '_>, modification: Option<&'a Modification>) {
         let Some(modification) = modification else { return };
         for argument in &modification.arguments {
             self.argument(scope, of, argument);
@@ -194,34 +203,34 @@ impl<'a> Walk<'_, 'a> {
         modification.value.iter().for_each(|e| self.expression(scope, e));
     }
 
-    fn argument(&mut self, scope: ClassId, of: Modified<'a, '_>, argument: &'a Argument) {
+    fn argument(&mut self, scope: ClassId, of: ModifierTarget<'a, '_>, argument: &'a ModificationArgument) {
         match &argument.kind {
-            ArgumentKind::Modify { path, modification, .. } => {
+            ModificationArgumentKind::Modify { path, modification, .. } => {
                 for (i, part) in path.parts.iter().enumerate() {
                     self.add(scope, *part, |w| w.element_of(of, &path.parts[..=i]));
                 }
-                self.modification(scope, Modified::Element(&of, path), modification.as_ref());
+                self.modification(scope, ModifierTarget::Element(&of, path), modification.as_ref());
             }
-            ArgumentKind::Component(component) => {
+            ModificationArgumentKind::Component(component) => {
                 self.add(scope, component.name, |w| w.element_of(of, &[component.name]));
                 self.component(scope, component);
             }
-            ArgumentKind::Class(class) => {
+            ModificationArgumentKind::Class(class) => {
                 self.add(scope, class.name, |w| w.element_of(of, &[class.name]));
                 if let ClassBody::Short { base, modification, .. } = &class.body {
                     self.path(scope, base);
-                    self.modification(scope, Modified::Type(scope, base), modification.as_ref());
+                    self.modification(scope, ModifierTarget::Type(scope, base), modification.as_ref());
                 }
             }
-            ArgumentKind::BreakComponent(name) => self.add(scope, *name, |w| w.element_of(of, &[*name])),
-            ArgumentKind::BreakConnect(a, b) => {
+            ModificationArgumentKind::BreakComponent(name) => self.add(scope, *name, |w| w.element_of(of, &[*name])),
+            ModificationArgumentKind::BreakConnect(a, b) => {
                 self.expression(scope, a);
                 self.expression(scope, b);
             }
         }
     }
 
-    fn element_of(&mut self, of: Modified<'a, '_>, parts: &[Ident]) -> Option<Target<'a>> {
+    fn element_of(&mut self, of: ModifierTarget<'a, '_>, parts: &[Ident]) -> Option<NameTarget<'a>> {
         let mut class = self.modified(of)?;
         let (last, before) = parts.split_last()?;
         for part in before {
@@ -231,14 +240,14 @@ impl<'a> Walk<'_, 'a> {
         names::element(self.library, class, last.name)
     }
 
-    fn modified(&mut self, of: Modified<'a, '_>) -> Option<ClassId> {
+    fn modified(&mut self, of: ModifierTarget<'a, '_>) -> Option<ClassId> {
         match of {
-            Modified::Type(scope, path) => names::resolve(self.library, scope, path),
-            Modified::Element(around, path) => {
+            ModifierTarget::Type(scope, path) => names::resolve(self.library, scope, path),
+            ModifierTarget::Element(around, path) => {
                 let target = self.element_of(*around, &path.parts)?;
                 names::inside(self.library, target)
             }
-            Modified::Class(id) => Some(id),
+            ModifierTarget::Class(id) => Some(id),
         }
     }
 
@@ -250,7 +259,7 @@ impl<'a> Walk<'_, 'a> {
         }
     }
 
-    fn reference(&mut self, scope: ClassId, reference: &'a Reference) {
+    fn reference(&mut self, scope: ClassId, reference: &'a ComponentReference) {
         for (i, part) in reference.parts.iter().enumerate() {
             self.add(scope, part.name, |w| w.meant(scope, reference, i));
             self.subscripts(scope, &part.subscripts);
@@ -258,12 +267,12 @@ impl<'a> Walk<'_, 'a> {
     }
 
     /// What the parts of a reference up to one stand for.
-    fn meant(&mut self, scope: ClassId, reference: &Reference, last: usize) -> Option<Target<'a>> {
+    fn meant(&mut self, scope: ClassId, reference: &ComponentReference, last: usize) -> Option<NameTarget<'a>> {
         let first = reference.parts[0].name;
         let local = self.locals.iter().rev().find(|l| l.name == first.name && !reference.global);
         let mut target = match local {
-            Some(local) => Target::Iterator(*local),
-            None if reference.global => Target::Class(self.library.top(first.name)?),
+            Some(local) => NameTarget::Iterator(*local),
+            None if reference.global => NameTarget::Class(self.library.top(first.name)?),
             None => names::lookup(self.library, scope, first.name)?,
         };
         for part in &reference.parts[1..=last] {
@@ -287,7 +296,7 @@ impl<'a> Walk<'_, 'a> {
             }
             ExprKind::PartialApplication { function, named } => {
                 self.path(scope, function);
-                let of = |w: &mut Self| names::resolve(w.library, scope, function).map(Target::Class);
+                let of = |w: &mut Self| names::resolve(w.library, scope, function).map(NameTarget::Class);
                 self.named(scope, of, named);
             }
             _ => e.each_child(&mut |inner| self.expression(scope, inner)),
@@ -298,25 +307,25 @@ impl<'a> Walk<'_, 'a> {
     fn named(
         &mut self,
         scope: ClassId,
-        function: impl Fn(&mut Self) -> Option<Target<'a>>,
+        function: impl Fn(&mut Self) -> Option<NameTarget<'a>>,
         named: &'a [(Ident, Expr)],
     ) {
         for (name, value) in named {
             self.add(scope, *name, |w| {
                 let target = function(w)?;
                 let class = names::inside(w.library, target)?;
-                w.element_of(Modified::Class(class), &[*name])
+                w.element_of(ModifierTarget::Class(class), &[*name])
             });
             self.expression(scope, value);
         }
     }
 
-    fn within(&mut self, scope: ClassId, iterators: &'a [Iterator], body: impl FnOnce(&mut Self)) {
+    fn within(&mut self, scope: ClassId, iterators: &'a [ForIndex], body: impl FnOnce(&mut Self)) {
         let outside = self.locals.len();
         for iterator in iterators {
             iterator.range.iter().for_each(|r| self.expression(scope, r));
             self.locals.push(iterator.name);
-            self.declare(scope, iterator.name, Target::Iterator(iterator.name));
+            self.declare(scope, iterator.name, NameTarget::Iterator(iterator.name));
         }
         body(self);
         self.locals.truncate(outside);

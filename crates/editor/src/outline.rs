@@ -1,21 +1,21 @@
 //! The outline of a file, and what can be folded.
 
-use super::lines::Lines;
-use super::{View, words};
-use bramah_syntax::ast::{Class, ClassBody, ClassKind, ElementKind, Variability};
+use super::lines::LineIndex;
+use super::{DocumentView, words};
+use bramah_syntax::ast::{Class, ClassBody, ClassKind, ElementKind, VariabilityPrefix};
 use bramah_syntax::diag::FileId;
-use bramah_syntax::format::Blocks;
+use bramah_syntax::format::BlockNesting;
 use bramah_syntax::lexer::lex;
 use bramah_syntax::token::TokenKind;
 use lsp_types::{DocumentSymbol, FoldingRange, SymbolKind};
 
 /// Classes and components of a file, inside each other.
-pub fn symbols(view: &View<'_, '_>) -> Vec<DocumentSymbol> {
+pub fn symbols(view: &DocumentView<'_, '_>) -> Vec<DocumentSymbol> {
     let own = view.classes.iter().map(|&id| view.library.class(id)).filter(|class| class.span.file == view.file);
     own.map(|class| symbol(view, class)).collect()
 }
 
-fn symbol(view: &View<'_, '_>, class: &Class) -> DocumentSymbol {
+fn symbol(view: &DocumentView<'_, '_>, class: &Class) -> DocumentSymbol {
     let children = match &class.body {
         ClassBody::Long(body) => body.elements.iter().filter_map(|e| element(view, &e.kind, e.span)).collect(),
         _ => Vec::new(),
@@ -32,13 +32,13 @@ fn symbol(view: &View<'_, '_>, class: &Class) -> DocumentSymbol {
     made(view, class.name, class.span, kind, class.description.as_deref(), children)
 }
 
-fn element(view: &View<'_, '_>, kind: &ElementKind, span: bramah_syntax::diag::Span) -> Option<DocumentSymbol> {
+fn element(view: &DocumentView<'_, '_>, kind: &ElementKind, span: bramah_syntax::diag::Span) -> Option<DocumentSymbol> {
     match kind {
         ElementKind::Class(class) => Some(symbol(view, class)),
         ElementKind::Component(component) => {
             let kind = match component.prefix.variability {
-                Some(Variability::Constant) => SymbolKind::CONSTANT,
-                Some(Variability::Parameter) => SymbolKind::PROPERTY,
+                Some(VariabilityPrefix::Constant) => SymbolKind::CONSTANT,
+                Some(VariabilityPrefix::Parameter) => SymbolKind::PROPERTY,
                 _ if component.class.parts.len() == 1 => SymbolKind::VARIABLE,
                 _ => SymbolKind::OBJECT,
             };
@@ -51,7 +51,7 @@ fn element(view: &View<'_, '_>, kind: &ElementKind, span: bramah_syntax::diag::S
 
 #[allow(deprecated, reason = "the protocol's struct has a field of that kind")]
 fn made(
-    view: &View<'_, '_>,
+    view: &DocumentView<'_, '_>,
     name: bramah_syntax::ast::Ident,
     span: bramah_syntax::diag::Span,
     kind: SymbolKind,
@@ -72,7 +72,7 @@ fn made(
 
 /// Classes, blocks and brackets of several lines.
 pub fn folds(text: &str) -> Vec<FoldingRange> {
-    let lines = Lines::new(text);
+    let lines = LineIndex::new(text);
     let mut found = Vec::new();
     let mut add = |start: u32, end: u32| {
         let (start_line, end_line) = (lines.position(text, start).line, lines.position(text, end).line);
@@ -81,7 +81,7 @@ pub fn folds(text: &str) -> Vec<FoldingRange> {
         }
     };
     let tokens = lex(FileId(0), text).tokens;
-    let mut blocks = Blocks::default();
+    let mut blocks = BlockNesting::default();
     let (mut brackets, mut levels) = (Vec::new(), Vec::new());
     let mut statement = 0;
     for (i, token) in tokens.iter().enumerate().take_while(|(_, t)| t.kind != TokenKind::Eof) {

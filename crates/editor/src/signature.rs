@@ -1,21 +1,21 @@
 //! The inputs of the function, or the parameters of the component, whose brackets are being written.
 
-use super::complete::Context;
-use super::{View, words};
-use bramah_model::resolve::names::{self, Target};
-use bramah_syntax::ast::{Causality, Variability};
+use super::complete::CompletionContext;
+use super::{DocumentView, words};
+use bramah_model::resolve::names::{self, NameTarget};
+use bramah_syntax::ast::{CausalityPrefix, VariabilityPrefix};
 use lsp_types::{Documentation, ParameterInformation, ParameterLabel, SignatureHelp, SignatureInformation};
 
 /// Help for the innermost bracket before a byte.
-pub fn help(view: &mut View<'_, '_>, offset: u32) -> Option<SignatureHelp> {
-    let context = Context::at(&view.text, offset);
+pub fn help(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<SignatureHelp> {
+    let context = CompletionContext::at(&view.text, offset);
     let call = context.calls.last()?;
     let scope = view.class_at(offset)?;
     let class = context.class_of(view.library, scope, context.calls.len())?;
     let function = words::is_function(view.library, class);
-    let wanted = |m: &names::Member<'_>| match function {
-        true => m.component.prefix.causality == Some(Causality::Input),
-        false => m.component.prefix.variability == Some(Variability::Parameter) && !m.protected,
+    let wanted = |m: &names::MemberComponent<'_>| match function {
+        true => m.component.prefix.causality == Some(CausalityPrefix::Input),
+        false => m.component.prefix.variability == Some(VariabilityPrefix::Parameter) && !m.protected,
     };
     let members: Vec<_> = names::members(view.library, class).into_iter().filter(wanted).collect();
     let mut label = format!("{}(", view.library.full_name(class));
@@ -29,7 +29,7 @@ pub fn help(view: &mut View<'_, '_>, offset: u32) -> Option<SignatureHelp> {
             &words::declaration(view.library, member.component).replace("input ", "").replace("parameter ", ""),
         );
         let end = label.encode_utf16().count() as u32;
-        let said = words::description(view.library, Target::Component(*member)).unwrap_or_default();
+        let said = words::description(view.library, NameTarget::Component(*member)).unwrap_or_default();
         let unit = words::attribute(view.library, *member, "unit").map(|u| format!(", in {u}")).unwrap_or_default();
         parameters.push(ParameterInformation {
             label: ParameterLabel::LabelOffsets([start, end]),
@@ -45,7 +45,7 @@ pub fn help(view: &mut View<'_, '_>, offset: u32) -> Option<SignatureHelp> {
     Some(SignatureHelp {
         signatures: vec![SignatureInformation {
             label,
-            documentation: words::description(view.library, Target::Class(class))
+            documentation: words::description(view.library, NameTarget::Class(class))
                 .map(|d| Documentation::String(d.to_owned())),
             parameters: Some(parameters),
             active_parameter: active.map(|i| i as u32),

@@ -1,8 +1,8 @@
 //! Answers about small texts; `|` marks the place asked about.
 
-use super::hints::{Facts, hints};
-use super::navigate::{self, Place};
-use super::{Texts, View, actions, complete, hover, messages, outline, signature, tokens};
+use super::hints::{ParameterHints, hints};
+use super::navigate::{self, FileRange};
+use super::{DocumentView, EditorWorkspace, actions, complete, hover, messages, outline, signature, tokens};
 use bramah_syntax::world::MemoryWorld;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -36,20 +36,20 @@ fn marked(text: &str) -> (String, u32) {
     (text.replacen('|', "", 1), at as u32)
 }
 
-fn look<T>(world: &MemoryWorld, path: &str, act: impl FnOnce(&mut View<'_, '_>) -> T) -> T {
-    Texts { world, libraries: &[] }.look(Path::new(path), |mut view| act(&mut view)).expect("it is there")
+fn look<T>(world: &MemoryWorld, path: &str, act: impl FnOnce(&mut DocumentView<'_, '_>) -> T) -> T {
+    EditorWorkspace { world, libraries: &[] }.look(Path::new(path), |mut view| act(&mut view)).expect("it is there")
 }
 
 /// What is said of the models of a file, and what is learnt of their parameters.
-fn checked(world: &MemoryWorld) -> (Vec<messages::Message>, Facts) {
-    let mut facts = Facts::default();
-    let texts = Texts { world, libraries: &[] };
+fn checked(world: &MemoryWorld) -> (Vec<messages::FileDiagnostic>, ParameterHints) {
+    let mut facts = ParameterHints::default();
+    let texts = EditorWorkspace { world, libraries: &[] };
     let said = messages::of_models(&texts, Path::new(FILE), &|_| None, &mut facts, &|| true);
     (said, facts)
 }
 
 /// Looks at `PRESS` with a mark before the first or a later occurrence of a word.
-fn in_press<T>(before: &str, act: impl FnOnce(&mut View<'_, '_>, u32) -> T) -> T {
+fn in_press<T>(before: &str, act: impl FnOnce(&mut DocumentView<'_, '_>, u32) -> T) -> T {
     let at = PRESS.find(before).expect("the words") as u32;
     look(&MemoryWorld::single(FILE, PRESS), FILE, |view| act(view, at))
 }
@@ -94,9 +94,14 @@ fn definitions_are_found_through_packages_modifiers_and_connections() {
 #[test]
 fn hover_shows_declaration_unit_value_and_text() {
     let world = MemoryWorld::single(FILE, PRESS);
-    let mut facts = Facts::default();
-    let said =
-        messages::of_models(&Texts { world: &world, libraries: &[] }, Path::new(FILE), &|_| None, &mut facts, &|| true);
+    let mut facts = ParameterHints::default();
+    let said = messages::of_models(
+        &EditorWorkspace { world: &world, libraries: &[] },
+        Path::new(FILE),
+        &|_| None,
+        &mut facts,
+        &|| true,
+    );
     assert!(said.iter().all(|m| m.path == Path::new(FILE)), "{said:#?}");
     let text = |before: &str| {
         let found = in_press(before, |view, at| hover::hover(view, at, &facts)).expect(before);
@@ -138,7 +143,7 @@ fn references_and_renaming_reach_other_files_of_a_package() {
         .add("/rig/Plant/Part.mo", "within Plant;\nmodel Part\n  parameter Real k = size;\n  Real y = k;\nend Part;\n");
     world.add("/rig/Plant/Use.mo", "within Plant;\nmodel Use\n  Part a(k = 3), b;\n  Real z = a.k + b.y;\nend Use;\n");
     world.add("/rig/Other.mo", "model Other\n  Real k = 1;\nend Other;\n");
-    let texts = Texts { world: &world, libraries: &[] };
+    let texts = EditorWorkspace { world: &world, libraries: &[] };
     let files: Vec<PathBuf> =
         ["Plant/package.mo", "Plant/Part.mo", "Plant/Use.mo", "Other.mo"].map(|f| PathBuf::from("/rig").join(f)).into();
     let of = |file: &str, before: &str| {
@@ -172,7 +177,7 @@ fn references_and_renaming_reach_other_files_of_a_package() {
     );
 }
 
-fn place(place: &Place) -> String {
+fn place(place: &FileRange) -> String {
     let name = place.path.file_name().unwrap_or_default().to_string_lossy();
     format!("{name}:{}:{}", place.range.0 + 1, place.range.1 + 1)
 }
@@ -232,7 +237,7 @@ fn messages_come_with_corrections() {
         ("Replace `Orifise` by `Orifice`", "Orifice")
     );
     let slips = messages::of_syntax(Path::new(FILE), "model M\n  Real x = 1\n  Real y = 2;\nend N;\n");
-    let fixes: Vec<actions::Correction> = slips.into_iter().filter_map(|m| m.correction).collect();
+    let fixes: Vec<actions::QuickFix> = slips.into_iter().filter_map(|m| m.correction).collect();
     assert_eq!(fixes.iter().map(|f| f.title.as_str()).collect::<Vec<_>>(), ["Insert `;`", "Replace `N` by `M`"]);
 }
 
@@ -283,7 +288,7 @@ proptest::proptest! {
         look(&MemoryWorld::single(FILE, &*text), FILE, |view| {
             complete::complete(view, at);
             signature::help(view, at);
-            hover::hover(view, at, &Facts::default());
+            hover::hover(view, at, &ParameterHints::default());
             navigate::definition(view, at);
             tokens::tokens(view);
             outline::symbols(view);

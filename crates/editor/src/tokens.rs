@@ -1,10 +1,10 @@
 //! Colours by meaning: types, parameters, variables, functions.
 
-use super::View;
-use super::occurrences::{self, Occurrence};
+use super::DocumentView;
+use super::occurrences::{self, NameOccurrence};
 use bramah_model::resolve::Library;
-use bramah_model::resolve::names::Target;
-use bramah_syntax::ast::{ClassKind, Variability};
+use bramah_model::resolve::names::NameTarget;
+use bramah_syntax::ast::{ClassKind, VariabilityPrefix};
 use lsp_types::{SemanticToken, SemanticTokenModifier, SemanticTokenType};
 
 /// The types that are used, in the order of their numbers.
@@ -23,10 +23,10 @@ pub const TYPES: [SemanticTokenType; 8] = [
 pub const MODIFIERS: [SemanticTokenModifier; 2] = [SemanticTokenModifier::DECLARATION, SemanticTokenModifier::READONLY];
 
 /// All names of a file with what they mean, as differences from one to the next.
-pub fn tokens(view: &mut View<'_, '_>) -> Vec<SemanticToken> {
+pub fn tokens(view: &mut DocumentView<'_, '_>) -> Vec<SemanticToken> {
     let file = view.file;
     let own = |ident: &bramah_syntax::ast::Ident| ident.span.file == file;
-    let mut found: Vec<Occurrence<'_>> =
+    let mut found: Vec<NameOccurrence<'_>> =
         view.classes.clone().into_iter().flat_map(|id| occurrences::of_class(view.library, id, &own)).collect();
     found.sort_by_key(|o| o.ident.span.start);
     found.dedup_by_key(|o| o.ident.span.start);
@@ -50,21 +50,21 @@ pub fn tokens(view: &mut View<'_, '_>) -> Vec<SemanticToken> {
 }
 
 /// The number in [`TYPES`], and whether it is constant.
-fn kind(library: &Library<'_>, target: Target<'_>) -> Option<(u32, bool)> {
+fn kind(library: &Library<'_>, target: NameTarget<'_>) -> Option<(u32, bool)> {
     Some(match target {
-        Target::Class(id) => match library.class(id).kind {
+        NameTarget::Class(id) => match library.class(id).kind {
             ClassKind::Package => (0, false),
             ClassKind::Type => (2, false),
             ClassKind::Function { .. } | ClassKind::Operator => (3, false),
             _ => (1, false),
         },
-        Target::Component(member) => match member.component.prefix.variability {
-            Some(Variability::Constant) => (4, true),
-            Some(Variability::Parameter) => (4, false),
+        NameTarget::Component(member) => match member.component.prefix.variability {
+            Some(VariabilityPrefix::Constant) => (4, true),
+            Some(VariabilityPrefix::Parameter) => (4, false),
             _ if member.component.class.parts.len() == 1 => (5, false),
             _ => (6, false),
         },
-        Target::Literal(..) => (7, true),
-        Target::Iterator(_) => (5, false),
+        NameTarget::Literal(..) => (7, true),
+        NameTarget::Iterator(_) => (5, false),
     })
 }

@@ -1,13 +1,14 @@
 //! What the words of a declaration say, as text for people.
 
-use bramah_model::resolve::names::{self, Member, Target};
+use bramah_model::resolve::names::{self, MemberComponent, NameTarget};
 use bramah_model::resolve::{ClassId, Library};
 use bramah_syntax::ast::{
-    ArgumentKind, Causality, ClassKind, Component, ExprKind, Modification, Prefixes, TypePrefix, Variability,
+    CausalityPrefix, ClassKind, ComponentDeclaration, ElementPrefixes, ExprKind, Modification,
+    ModificationArgumentKind, TypePrefix, VariabilityPrefix,
 };
 
 /// An attribute that is a text, such as `unit`.
-pub(super) fn attribute<'a>(library: &mut Library<'a>, member: Member<'a>, name: &str) -> Option<String> {
+pub(super) fn attribute<'a>(library: &mut Library<'a>, member: MemberComponent<'a>, name: &str) -> Option<String> {
     match &names::attribute(library, member, name)?.kind {
         ExprKind::String(text) => Some(text.to_string()),
         _ => None,
@@ -15,7 +16,7 @@ pub(super) fn attribute<'a>(library: &mut Library<'a>, member: Member<'a>, name:
 }
 
 /// `parameter SI.Volume V = 1e-5`, as declared but for brackets.
-pub(super) fn declaration(library: &Library<'_>, component: &Component) -> String {
+pub(super) fn declaration(library: &Library<'_>, component: &ComponentDeclaration) -> String {
     let mut out = prefixes(&component.prefixes, &component.prefix);
     out.push_str(&component.class.dotted());
     out.push(' ');
@@ -32,7 +33,7 @@ pub(super) fn declaration(library: &Library<'_>, component: &Component) -> Strin
     out
 }
 
-fn prefixes(all: &Prefixes, prefix: &TypePrefix) -> String {
+fn prefixes(all: &ElementPrefixes, prefix: &TypePrefix) -> String {
     let words = [
         (all.final_, "final "),
         (all.inner, "inner "),
@@ -40,11 +41,11 @@ fn prefixes(all: &Prefixes, prefix: &TypePrefix) -> String {
         (all.replaceable, "replaceable "),
         (prefix.flow, "flow "),
         (prefix.stream, "stream "),
-        (prefix.variability == Some(Variability::Constant), "constant "),
-        (prefix.variability == Some(Variability::Parameter), "parameter "),
-        (prefix.variability == Some(Variability::Discrete), "discrete "),
-        (prefix.causality == Some(Causality::Input), "input "),
-        (prefix.causality == Some(Causality::Output), "output "),
+        (prefix.variability == Some(VariabilityPrefix::Constant), "constant "),
+        (prefix.variability == Some(VariabilityPrefix::Parameter), "parameter "),
+        (prefix.variability == Some(VariabilityPrefix::Discrete), "discrete "),
+        (prefix.causality == Some(CausalityPrefix::Input), "input "),
+        (prefix.causality == Some(CausalityPrefix::Output), "output "),
     ];
     words.iter().filter(|(is_there, _)| *is_there).map(|(_, word)| *word).collect()
 }
@@ -57,12 +58,12 @@ pub(super) fn class_line(library: &Library<'_>, id: ClassId) -> String {
 }
 
 /// The description of what is declared.
-pub(super) fn description<'a>(library: &Library<'a>, target: Target<'a>) -> Option<&'a str> {
+pub(super) fn description<'a>(library: &Library<'a>, target: NameTarget<'a>) -> Option<&'a str> {
     match target {
-        Target::Class(id) => library.class(id).description.as_deref(),
-        Target::Component(member) => member.component.description.as_deref(),
-        Target::Literal(_, literal) => literal.description.as_deref(),
-        Target::Iterator(_) => None,
+        NameTarget::Class(id) => library.class(id).description.as_deref(),
+        NameTarget::Component(member) => member.component.description.as_deref(),
+        NameTarget::Literal(_, literal) => literal.description.as_deref(),
+        NameTarget::Iterator(_) => None,
     }
 }
 
@@ -78,7 +79,7 @@ pub(super) fn documentation<'a>(library: &Library<'a>, id: ClassId) -> Option<&'
 
 fn inner<'m>(modification: &'m Modification, name: &str) -> Option<&'m Modification> {
     modification.arguments.iter().find_map(|a| match &a.kind {
-        ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => Some(m),
+        ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => Some(m),
         _ => None,
     })
 }

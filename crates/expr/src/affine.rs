@@ -1,11 +1,11 @@
 //! Affine expressions: `e = coefficient*leaf + rest` with both free of the leaf, and equations solved for a leaf.
 
-use super::{Binary, ExprId, Exprs, Node, Unary};
+use super::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction};
 use rustc_hash::FxHashMap;
 
 /// `coefficient*leaf + rest`
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Affine {
+pub struct AffineForm {
     /// The factor of the leaf.
     pub coefficient: ExprId,
     /// What is added.
@@ -15,10 +15,10 @@ pub struct Affine {
 impl Exprs {
     /// `e` as an affine expression of `leaf`, if its structure shows that it is one. The coefficient is 0 when `e` does
     /// not depend on the leaf.
-    pub fn linear_in(&mut self, e: ExprId, leaf: ExprId) -> Option<Affine> {
+    pub fn linear_in(&mut self, e: ExprId, leaf: ExprId) -> Option<AffineForm> {
         // A part that is not in the map is free of the leaf.
-        let mut parts: FxHashMap<ExprId, Affine> = FxHashMap::default();
-        parts.insert(leaf, Affine { coefficient: Self::ONE, rest: Self::ZERO });
+        let mut parts: FxHashMap<ExprId, AffineForm> = FxHashMap::default();
+        parts.insert(leaf, AffineForm { coefficient: Self::ONE, rest: Self::ZERO });
         // No node below the leaf's id can hold it.
         for node in self.reachable(&[e], |node| node > leaf) {
             let operands = self.operands(node);
@@ -27,7 +27,7 @@ impl Exprs {
                 parts.insert(node, part);
             }
         }
-        Some(parts.get(&e).copied().unwrap_or(Affine { coefficient: Self::ZERO, rest: e }))
+        Some(parts.get(&e).copied().unwrap_or(AffineForm { coefficient: Self::ZERO, rest: e }))
     }
 
     /// The value of `leaf` that fulfils `lhs = rhs`, and the coefficient that was divided by, when the equation is affine
@@ -43,43 +43,43 @@ impl Exprs {
         Some((self.div(rest, coefficient), coefficient))
     }
 
-    fn affine_node(&mut self, node: ExprId, parts: &FxHashMap<ExprId, Affine>) -> Option<Affine> {
-        let of = |e: ExprId| parts.get(&e).copied().unwrap_or(Affine { coefficient: Self::ZERO, rest: e });
+    fn affine_node(&mut self, node: ExprId, parts: &FxHashMap<ExprId, AffineForm>) -> Option<AffineForm> {
+        let of = |e: ExprId| parts.get(&e).copied().unwrap_or(AffineForm { coefficient: Self::ZERO, rest: e });
         let free = |e: ExprId| !parts.contains_key(&e);
         match self.node(node) {
-            Node::Unary(Unary::Neg, a) => Some(self.each_part(of(a), of(a), |pool, x, _| pool.neg(x))),
-            Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
+            ExprNode::Unary(UnaryFunction::Neg, a) => Some(self.each_part(of(a), of(a), |pool, x, _| pool.neg(x))),
+            ExprNode::Binary(op @ (BinaryFunction::Add | BinaryFunction::Sub), a, b) => {
                 Some(self.each_part(of(a), of(b), |pool, x, y| pool.binary(op, x, y)))
             }
-            Node::Binary(Binary::Mul, a, b) if free(b) => {
+            ExprNode::Binary(BinaryFunction::Mul, a, b) if free(b) => {
                 Some(self.each_part(of(a), of(a), |pool, x, _| pool.mul(x, b)))
             }
-            Node::Binary(Binary::Mul, a, b) if free(a) => {
+            ExprNode::Binary(BinaryFunction::Mul, a, b) if free(a) => {
                 Some(self.each_part(of(b), of(b), |pool, x, _| pool.mul(a, x)))
             }
-            Node::Binary(Binary::Div, a, b) if free(b) => {
+            ExprNode::Binary(BinaryFunction::Div, a, b) if free(b) => {
                 Some(self.each_part(of(a), of(a), |pool, x, _| pool.div(x, b)))
             }
-            Node::If(c, a, b) if free(c) => Some(self.each_part(of(a), of(b), |pool, x, y| pool.if_(c, x, y))),
-            Node::Homotopy(a, b) => Some(self.each_part(of(a), of(b), Exprs::homotopy)),
+            ExprNode::If(c, a, b) if free(c) => Some(self.each_part(of(a), of(b), |pool, x, y| pool.if_(c, x, y))),
+            ExprNode::Homotopy(a, b) => Some(self.each_part(of(a), of(b), Exprs::homotopy)),
             _ => None,
         }
     }
 
     fn each_part(
         &mut self,
-        a: Affine,
-        b: Affine,
+        a: AffineForm,
+        b: AffineForm,
         mut change: impl FnMut(&mut Exprs, ExprId, ExprId) -> ExprId,
-    ) -> Affine {
-        Affine { coefficient: change(self, a.coefficient, b.coefficient), rest: change(self, a.rest, b.rest) }
+    ) -> AffineForm {
+        AffineForm { coefficient: change(self, a.coefficient, b.coefficient), rest: change(self, a.rest, b.rest) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Rel, VarId};
+    use crate::{RelationalOp, VarId};
 
     fn vars(p: &mut Exprs) -> (ExprId, ExprId, ExprId) {
         (p.var(VarId(0)), p.var(VarId(1)), p.var(VarId(2)))
@@ -89,8 +89,8 @@ mod tests {
     fn lone_leaves_and_free_expressions() {
         let mut p = Exprs::default();
         let (x, a, _) = vars(&mut p);
-        assert_eq!(p.linear_in(x, x), Some(Affine { coefficient: Exprs::ONE, rest: Exprs::ZERO }));
-        assert_eq!(p.linear_in(a, x), Some(Affine { coefficient: Exprs::ZERO, rest: a }));
+        assert_eq!(p.linear_in(x, x), Some(AffineForm { coefficient: Exprs::ONE, rest: Exprs::ZERO }));
+        assert_eq!(p.linear_in(a, x), Some(AffineForm { coefficient: Exprs::ZERO, rest: a }));
         assert_eq!(p.solve_for(x, a, x), Some((a, Exprs::ONE)));
         assert_eq!(p.solve_for(a, a, x), None);
     }
@@ -114,12 +114,12 @@ mod tests {
     fn branches_stay_affine_and_conditions_do_not() {
         let mut p = Exprs::default();
         let (x, a, b) = vars(&mut p);
-        let c = p.rel(Rel::Lt, a, b);
+        let c = p.rel(RelationalOp::Lt, a, b);
         let branch = p.if_(c, x, a);
         let affine = p.linear_in(branch, x).expect("affine");
         let coefficient = p.if_(c, Exprs::ONE, Exprs::ZERO);
         assert_eq!(affine.coefficient, coefficient);
-        let on_x = p.rel(Rel::Lt, x, b);
+        let on_x = p.rel(RelationalOp::Lt, x, b);
         let kink = p.if_(on_x, x, a);
         assert_eq!(p.linear_in(kink, x), None);
         let square = p.mul(x, x);

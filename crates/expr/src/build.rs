@@ -7,43 +7,47 @@
 //! spellings the one that came first into the pool is shared.
 
 use super::math;
-use super::{Binary, ExprId, Exprs, Node, Rel, Unary};
+use super::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction};
 
 impl Exprs {
     /// The negative.
     pub fn neg(&mut self, a: ExprId) -> ExprId {
         match self.node(a) {
-            Node::Num(bits) => self.num(-f64::from_bits(bits)),
-            Node::Unary(Unary::Neg, inner) => inner,
-            Node::Binary(Binary::Sub, x, y) => self.sub(y, x),
-            Node::Binary(op @ (Binary::Mul | Binary::Div), x, y) => match self.as_num(x) {
+            ExprNode::Num(bits) => self.num(-f64::from_bits(bits)),
+            ExprNode::Unary(UnaryFunction::Neg, inner) => inner,
+            ExprNode::Binary(BinaryFunction::Sub, x, y) => self.sub(y, x),
+            ExprNode::Binary(op @ (BinaryFunction::Mul | BinaryFunction::Div), x, y) => match self.as_num(x) {
                 Some(c) => {
                     let minus = self.num(-c);
                     self.binary(op, minus, y)
                 }
-                None => self.intern(Node::Unary(Unary::Neg, a)),
+                None => self.intern(ExprNode::Unary(UnaryFunction::Neg, a)),
             },
-            _ => self.intern(Node::Unary(Unary::Neg, a)),
+            _ => self.intern(ExprNode::Unary(UnaryFunction::Neg, a)),
         }
     }
 
     /// Logical negation.
     pub fn not(&mut self, a: ExprId) -> ExprId {
         match self.node(a) {
-            Node::Num(bits) => self.boolean(f64::from_bits(bits) == 0.0),
-            Node::Unary(Unary::Not, inner) if self.is_truth(inner) => inner,
-            _ => self.intern(Node::Unary(Unary::Not, a)),
+            ExprNode::Num(bits) => self.boolean(f64::from_bits(bits) == 0.0),
+            ExprNode::Unary(UnaryFunction::Not, inner) if self.is_truth(inner) => inner,
+            _ => self.intern(ExprNode::Unary(UnaryFunction::Not, a)),
         }
     }
 
     /// True when the value can only be 0 or 1. Variables are not known to be.
     fn is_truth(&self, e: ExprId) -> bool {
         match self.node(e) {
-            Node::Rel(..) | Node::EventRel(..) | Node::Sample(..) | Node::Initial | Node::Terminal => true,
-            Node::Unary(op, _) => op == Unary::Not,
-            Node::Binary(op, ..) => matches!(op, Binary::And | Binary::Or),
+            ExprNode::Rel(..)
+            | ExprNode::EventRel(..)
+            | ExprNode::Sample(..)
+            | ExprNode::Initial
+            | ExprNode::Terminal => true,
+            ExprNode::Unary(op, _) => op == UnaryFunction::Not,
+            ExprNode::Binary(op, ..) => matches!(op, BinaryFunction::And | BinaryFunction::Or),
             // A variable under `not` is Boolean: the type check has seen to it.
-            Node::Var(_) | Node::Pre(_) => true,
+            ExprNode::Var(_) | ExprNode::Pre(_) => true,
             _ => e == Self::ZERO || e == Self::ONE,
         }
     }
@@ -56,15 +60,15 @@ impl Exprs {
         if b == Self::ZERO {
             return a;
         }
-        if let Some(folded) = self.fold(Binary::Add, a, b) {
+        if let Some(folded) = self.fold(BinaryFunction::Add, a, b) {
             return folded;
         }
         if let Some(positive) = self.negative_of(b) {
             return self.sub(a, positive);
         }
         match self.node(a) {
-            Node::Unary(Unary::Neg, x) => self.sub(b, x),
-            _ => self.commutative(Binary::Add, a, b),
+            ExprNode::Unary(UnaryFunction::Neg, x) => self.sub(b, x),
+            _ => self.commutative(BinaryFunction::Add, a, b),
         }
     }
 
@@ -79,13 +83,13 @@ impl Exprs {
         if a == Self::ZERO {
             return self.neg(b);
         }
-        if let Some(folded) = self.fold(Binary::Sub, a, b) {
+        if let Some(folded) = self.fold(BinaryFunction::Sub, a, b) {
             return folded;
         }
         if let Some(positive) = self.negative_of(b) {
             return self.add(a, positive);
         }
-        self.intern(Node::Binary(Binary::Sub, a, b))
+        self.intern(ExprNode::Binary(BinaryFunction::Sub, a, b))
     }
 
     /// The product.
@@ -99,7 +103,7 @@ impl Exprs {
         if b == Self::ONE {
             return a;
         }
-        if let Some(folded) = self.fold(Binary::Mul, a, b) {
+        if let Some(folded) = self.fold(BinaryFunction::Mul, a, b) {
             return folded;
         }
         if self.as_num(a) == Some(-1.0) {
@@ -109,10 +113,10 @@ impl Exprs {
             return self.neg(a);
         }
         match (self.node(a), self.node(b)) {
-            (Node::Unary(Unary::Neg, x), Node::Unary(Unary::Neg, y)) => self.mul(x, y),
-            (Node::Unary(Unary::Neg, x), _) => self.negated(Binary::Mul, x, b),
-            (_, Node::Unary(Unary::Neg, y)) => self.negated(Binary::Mul, a, y),
-            _ => self.commutative(Binary::Mul, a, b),
+            (ExprNode::Unary(UnaryFunction::Neg, x), ExprNode::Unary(UnaryFunction::Neg, y)) => self.mul(x, y),
+            (ExprNode::Unary(UnaryFunction::Neg, x), _) => self.negated(BinaryFunction::Mul, x, b),
+            (_, ExprNode::Unary(UnaryFunction::Neg, y)) => self.negated(BinaryFunction::Mul, a, y),
+            _ => self.commutative(BinaryFunction::Mul, a, b),
         }
     }
 
@@ -121,17 +125,17 @@ impl Exprs {
         if b == Self::ONE || (a == Self::ZERO && b != Self::ZERO) {
             return a;
         }
-        if let Some(folded) = self.fold(Binary::Div, a, b) {
+        if let Some(folded) = self.fold(BinaryFunction::Div, a, b) {
             return folded;
         }
         if self.as_num(b) == Some(-1.0) {
             return self.neg(a);
         }
         match (self.node(a), self.node(b)) {
-            (Node::Unary(Unary::Neg, x), Node::Unary(Unary::Neg, y)) => self.div(x, y),
-            (Node::Unary(Unary::Neg, x), _) => self.negated(Binary::Div, x, b),
-            (_, Node::Unary(Unary::Neg, y)) => self.negated(Binary::Div, a, y),
-            _ => self.intern(Node::Binary(Binary::Div, a, b)),
+            (ExprNode::Unary(UnaryFunction::Neg, x), ExprNode::Unary(UnaryFunction::Neg, y)) => self.div(x, y),
+            (ExprNode::Unary(UnaryFunction::Neg, x), _) => self.negated(BinaryFunction::Div, x, b),
+            (_, ExprNode::Unary(UnaryFunction::Neg, y)) => self.negated(BinaryFunction::Div, a, y),
+            _ => self.intern(ExprNode::Binary(BinaryFunction::Div, a, b)),
         }
     }
 
@@ -143,22 +147,22 @@ impl Exprs {
         if b == Self::ONE {
             return a;
         }
-        self.folded(Binary::Pow, a, b)
+        self.folded(BinaryFunction::Pow, a, b)
     }
 
     /// The smaller one.
     pub fn min(&mut self, a: ExprId, b: ExprId) -> ExprId {
-        if a == b { a } else { self.folded(Binary::Min, a, b) }
+        if a == b { a } else { self.folded(BinaryFunction::Min, a, b) }
     }
 
     /// The larger one.
     pub fn max(&mut self, a: ExprId, b: ExprId) -> ExprId {
-        if a == b { a } else { self.folded(Binary::Max, a, b) }
+        if a == b { a } else { self.folded(BinaryFunction::Max, a, b) }
     }
 
     /// The angle of the point `(x, y)`.
     pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
-        self.folded(Binary::Atan2, y, x)
+        self.folded(BinaryFunction::Atan2, y, x)
     }
 
     /// Both.
@@ -168,7 +172,7 @@ impl Exprs {
             (Some(_), _) => b,
             (_, Some(_)) => a,
             _ if a == b => a,
-            _ => self.commutative(Binary::And, a, b),
+            _ => self.commutative(BinaryFunction::And, a, b),
         }
     }
 
@@ -179,7 +183,7 @@ impl Exprs {
             (_, Some(0.0)) => a,
             (Some(_), _) | (_, Some(_)) => Self::ONE,
             _ if a == b => a,
-            _ => self.commutative(Binary::Or, a, b),
+            _ => self.commutative(BinaryFunction::Or, a, b),
         }
     }
 
@@ -190,26 +194,26 @@ impl Exprs {
     }
 
     /// Any function of two arguments, simplified.
-    pub fn binary(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
+    pub fn binary(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         match op {
-            Binary::Add => self.add(a, b),
-            Binary::Sub => self.sub(a, b),
-            Binary::Mul => self.mul(a, b),
-            Binary::Div => self.div(a, b),
-            Binary::Pow => self.pow(a, b),
-            Binary::Atan2 => self.atan2(a, b),
-            Binary::Min => self.min(a, b),
-            Binary::Max => self.max(a, b),
-            Binary::And => self.and(a, b),
-            Binary::Or => self.or(a, b),
+            BinaryFunction::Add => self.add(a, b),
+            BinaryFunction::Sub => self.sub(a, b),
+            BinaryFunction::Mul => self.mul(a, b),
+            BinaryFunction::Div => self.div(a, b),
+            BinaryFunction::Pow => self.pow(a, b),
+            BinaryFunction::Atan2 => self.atan2(a, b),
+            BinaryFunction::Min => self.min(a, b),
+            BinaryFunction::Max => self.max(a, b),
+            BinaryFunction::And => self.and(a, b),
+            BinaryFunction::Or => self.or(a, b),
         }
     }
 
     /// Any function of one argument, simplified.
-    pub fn unary(&mut self, op: Unary, a: ExprId) -> ExprId {
+    pub fn unary(&mut self, op: UnaryFunction, a: ExprId) -> ExprId {
         match op {
-            Unary::Neg => return self.neg(a),
-            Unary::Not => return self.not(a),
+            UnaryFunction::Neg => return self.neg(a),
+            UnaryFunction::Not => return self.not(a),
             _ => {}
         }
         if let Some(x) = self.as_num(a) {
@@ -219,45 +223,47 @@ impl Exprs {
             }
         }
         match (op, self.node(a)) {
-            (Unary::Abs, Node::Unary(Unary::Neg, x)) => self.unary(Unary::Abs, x),
-            (Unary::Abs, Node::Unary(Unary::Abs | Unary::Sqrt | Unary::Exp, _)) => a,
-            _ => self.intern(Node::Unary(op, a)),
+            (UnaryFunction::Abs, ExprNode::Unary(UnaryFunction::Neg, x)) => self.unary(UnaryFunction::Abs, x),
+            (UnaryFunction::Abs, ExprNode::Unary(UnaryFunction::Abs | UnaryFunction::Sqrt | UnaryFunction::Exp, _)) => {
+                a
+            }
+            _ => self.intern(ExprNode::Unary(op, a)),
         }
     }
 
     /// Absolute value.
     pub fn abs(&mut self, a: ExprId) -> ExprId {
-        self.unary(Unary::Abs, a)
+        self.unary(UnaryFunction::Abs, a)
     }
 
     /// Square root.
     pub fn sqrt(&mut self, a: ExprId) -> ExprId {
-        self.unary(Unary::Sqrt, a)
+        self.unary(UnaryFunction::Sqrt, a)
     }
 
     /// Largest whole number not above the argument; makes no event.
     pub fn floor(&mut self, a: ExprId) -> ExprId {
-        self.unary(Unary::Floor, a)
+        self.unary(UnaryFunction::Floor, a)
     }
 
     /// Largest whole number not above the argument; a change is an event.
     pub fn event_floor(&mut self, a: ExprId) -> ExprId {
-        if self.as_num(a).is_some() { self.floor(a) } else { self.intern(Node::EventFloor(a)) }
+        if self.as_num(a).is_some() { self.floor(a) } else { self.intern(ExprNode::EventFloor(a)) }
     }
 
     /// A relation that makes no event.
-    pub fn rel(&mut self, rel: Rel, a: ExprId, b: ExprId) -> ExprId {
-        self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(Node::Rel(rel, a, b)))
+    pub fn rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> ExprId {
+        self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(ExprNode::Rel(rel, a, b)))
     }
 
     /// A relation whose change is an event.
-    pub fn event_rel(&mut self, rel: Rel, a: ExprId, b: ExprId) -> ExprId {
-        self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(Node::EventRel(rel, a, b)))
+    pub fn event_rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> ExprId {
+        self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(ExprNode::EventRel(rel, a, b)))
     }
 
-    fn known_rel(&mut self, rel: Rel, a: ExprId, b: ExprId) -> Option<ExprId> {
+    fn known_rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> Option<ExprId> {
         if a == b {
-            return Some(self.boolean(matches!(rel, Rel::Le | Rel::Ge | Rel::Eq)));
+            return Some(self.boolean(matches!(rel, RelationalOp::Le | RelationalOp::Ge | RelationalOp::Eq)));
         }
         let (x, y) = (self.as_num(a)?, self.as_num(b)?);
         Some(self.boolean(math::holds(rel, x, y)))
@@ -272,26 +278,26 @@ impl Exprs {
             return a;
         }
         match self.node(c) {
-            Node::Unary(Unary::Not, inner) => self.if_(inner, b, a),
-            _ => self.intern(Node::If(c, a, b)),
+            ExprNode::Unary(UnaryFunction::Not, inner) => self.if_(inner, b, a),
+            _ => self.intern(ExprNode::If(c, a, b)),
         }
     }
 
     /// `homotopy(actual, simplified)`
     pub fn homotopy(&mut self, actual: ExprId, simplified: ExprId) -> ExprId {
-        if actual == simplified { actual } else { self.intern(Node::Homotopy(actual, simplified)) }
+        if actual == simplified { actual } else { self.intern(ExprNode::Homotopy(actual, simplified)) }
     }
 
     /// `sample(start, interval)`
     pub fn sample(&mut self, start: ExprId, interval: ExprId) -> ExprId {
-        self.intern(Node::Sample(start, interval))
+        self.intern(ExprNode::Sample(start, interval))
     }
 
     /// `delay(a, time)`
     pub fn delay(&mut self, a: ExprId, time: ExprId) -> ExprId {
         match self.node(a) {
-            Node::Num(_) => a,
-            _ => self.intern(Node::Delay(a, time)),
+            ExprNode::Num(_) => a,
+            _ => self.intern(ExprNode::Delay(a, time)),
         }
     }
 
@@ -309,30 +315,30 @@ impl Exprs {
     /// `x` when the expression is `-x` or a negative number.
     fn negative_of(&mut self, e: ExprId) -> Option<ExprId> {
         match self.node(e) {
-            Node::Unary(Unary::Neg, x) => Some(x),
-            Node::Num(bits) if f64::from_bits(bits) < 0.0 => Some(self.num(-f64::from_bits(bits))),
+            ExprNode::Unary(UnaryFunction::Neg, x) => Some(x),
+            ExprNode::Num(bits) if f64::from_bits(bits) < 0.0 => Some(self.num(-f64::from_bits(bits))),
             _ => None,
         }
     }
 
-    fn negated(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
+    fn negated(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         let positive = self.binary(op, a, b);
         self.neg(positive)
     }
 
     /// The number, when both are numbers and the result is finite.
-    fn fold(&mut self, op: Binary, a: ExprId, b: ExprId) -> Option<ExprId> {
+    fn fold(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> Option<ExprId> {
         let value = math::binary(op, self.as_num(a)?, self.as_num(b)?);
         value.is_finite().then(|| self.num(value))
     }
 
-    fn folded(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
-        self.fold(op, a, b).unwrap_or_else(|| self.intern(Node::Binary(op, a, b)))
+    fn folded(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
+        self.fold(op, a, b).unwrap_or_else(|| self.intern(ExprNode::Binary(op, a, b)))
     }
 
     /// Shares `b op a` if that spelling is in the pool.
-    fn commutative(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
-        self.find(&Node::Binary(op, b, a)).unwrap_or_else(|| self.intern(Node::Binary(op, a, b)))
+    fn commutative(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
+        self.find(&ExprNode::Binary(op, b, a)).unwrap_or_else(|| self.intern(ExprNode::Binary(op, a, b)))
     }
 }
 
@@ -354,10 +360,10 @@ mod tests {
         let six = p.mul(two, three);
         assert_eq!(p.as_num(six), Some(6.0));
         let infinite = p.div(two, Exprs::ZERO);
-        assert_eq!(p.node(infinite), Node::Binary(Binary::Div, two, Exprs::ZERO));
+        assert_eq!(p.node(infinite), ExprNode::Binary(BinaryFunction::Div, two, Exprs::ZERO));
         let minus = p.num(-2.0);
         let root = p.sqrt(minus);
-        assert_eq!(p.node(root), Node::Unary(Unary::Sqrt, minus));
+        assert_eq!(p.node(root), ExprNode::Unary(UnaryFunction::Sqrt, minus));
         let nothing = p.div(Exprs::ZERO, Exprs::ZERO);
         assert_eq!(p.as_num(nothing), None);
     }
@@ -396,7 +402,7 @@ mod tests {
     #[test]
     fn truth_values_fold() {
         let (mut p, x, y) = pool();
-        let c = p.rel(Rel::Lt, x, y);
+        let c = p.rel(RelationalOp::Lt, x, y);
         assert_eq!(p.and(c, Exprs::ONE), c);
         assert_eq!(p.and(Exprs::ZERO, c), Exprs::ZERO);
         assert_eq!(p.or(c, Exprs::ONE), Exprs::ONE);
@@ -405,6 +411,6 @@ mod tests {
         let (left, right) = (p.if_(no, x, y), p.if_(c, y, x));
         assert_eq!(left, right);
         assert_eq!(p.if_(Exprs::ONE, x, y), x);
-        assert_eq!(p.event_rel(Rel::Le, x, x), Exprs::ONE);
+        assert_eq!(p.event_rel(RelationalOp::Le, x, x), Exprs::ONE);
     }
 }

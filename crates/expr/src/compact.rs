@@ -1,6 +1,6 @@
 //! A pool without the nodes that nothing refers to any more.
 
-use super::{ExprId, Exprs, Node};
+use super::{ExprId, ExprNode, Exprs};
 
 impl Exprs {
     /// Keeps only what the roots reach, and rewrites them.
@@ -25,16 +25,16 @@ impl Exprs {
     fn copied(&mut self, from: &Exprs, e: ExprId, place: &[ExprId]) -> ExprId {
         let to = |e: ExprId| place[e.index()];
         let node = match from.node(e) {
-            Node::Unary(op, a) => Node::Unary(op, to(a)),
-            Node::Binary(op, a, b) => Node::Binary(op, to(a), to(b)),
-            Node::Rel(rel, a, b) => Node::Rel(rel, to(a), to(b)),
-            Node::EventRel(rel, a, b) => Node::EventRel(rel, to(a), to(b)),
-            Node::EventFloor(a) => Node::EventFloor(to(a)),
-            Node::If(c, a, b) => Node::If(to(c), to(a), to(b)),
-            Node::Sample(a, b) => Node::Sample(to(a), to(b)),
-            Node::Delay(a, b) => Node::Delay(to(a), to(b)),
-            Node::Homotopy(a, b) => Node::Homotopy(to(a), to(b)),
-            Node::Call(function, output, args) => {
+            ExprNode::Unary(op, a) => ExprNode::Unary(op, to(a)),
+            ExprNode::Binary(op, a, b) => ExprNode::Binary(op, to(a), to(b)),
+            ExprNode::Rel(rel, a, b) => ExprNode::Rel(rel, to(a), to(b)),
+            ExprNode::EventRel(rel, a, b) => ExprNode::EventRel(rel, to(a), to(b)),
+            ExprNode::EventFloor(a) => ExprNode::EventFloor(to(a)),
+            ExprNode::If(c, a, b) => ExprNode::If(to(c), to(a), to(b)),
+            ExprNode::Sample(a, b) => ExprNode::Sample(to(a), to(b)),
+            ExprNode::Delay(a, b) => ExprNode::Delay(to(a), to(b)),
+            ExprNode::Homotopy(a, b) => ExprNode::Homotopy(to(a), to(b)),
+            ExprNode::Call(function, output, args) => {
                 let args: Vec<ExprId> = from.args(args).iter().map(|&a| to(a)).collect();
                 return self.call(function, output, &args);
             }

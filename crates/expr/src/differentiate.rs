@@ -1,12 +1,12 @@
 //! Exact derivatives: partial ones by a leaf, and the total one by time.
 
-use super::rules::{self, Algebra};
-use super::{Args, Binary, ExprId, Exprs, FunctionId, Node, Rel, Unary, VarId};
+use super::rules::{self, ExprAlgebra};
+use super::{ArgumentRange, BinaryFunction, ExprId, ExprNode, Exprs, FunctionId, RelationalOp, UnaryFunction, VarId};
 use rustc_hash::FxHashMap;
 
 /// A leaf whose time derivative depends on the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Leaf {
+pub enum DerivativeLeaf {
     /// The value of a variable.
     Var(VarId),
     /// The time derivative of a variable.
@@ -55,14 +55,14 @@ impl TimeDerivative {
         &mut self,
         pool: &mut Exprs,
         e: ExprId,
-        leaf: &mut impl FnMut(&mut Exprs, Leaf) -> Option<ExprId>,
-    ) -> Result<ExprId, Leaf> {
+        leaf: &mut impl FnMut(&mut Exprs, DerivativeLeaf) -> Option<ExprId>,
+    ) -> Result<ExprId, DerivativeLeaf> {
         for node in pool.reachable(&[e], |node| !self.memo.contains_key(&node)) {
             let derivative = match pool.node(node) {
-                Node::Time => Exprs::ONE,
-                Node::Delay(a, time) => pool.delay(self.memo[&a], time),
-                Node::Var(v) => leaf(pool, Leaf::Var(v)).ok_or(Leaf::Var(v))?,
-                Node::Der(v) => leaf(pool, Leaf::Der(v)).ok_or(Leaf::Der(v))?,
+                ExprNode::Time => Exprs::ONE,
+                ExprNode::Delay(a, time) => pool.delay(self.memo[&a], time),
+                ExprNode::Var(v) => leaf(pool, DerivativeLeaf::Var(v)).ok_or(DerivativeLeaf::Var(v))?,
+                ExprNode::Der(v) => leaf(pool, DerivativeLeaf::Der(v)).ok_or(DerivativeLeaf::Der(v))?,
                 _ => node_derivative(pool, node, &self.memo),
             };
             self.memo.insert(node, derivative);
@@ -81,8 +81,8 @@ impl Exprs {
     pub fn time_derivative(
         &mut self,
         e: ExprId,
-        leaf: &mut impl FnMut(&mut Exprs, Leaf) -> Option<ExprId>,
-    ) -> Result<ExprId, Leaf> {
+        leaf: &mut impl FnMut(&mut Exprs, DerivativeLeaf) -> Option<ExprId>,
+    ) -> Result<ExprId, DerivativeLeaf> {
         TimeDerivative::default().derive(self, e, leaf)
     }
 }
@@ -91,11 +91,11 @@ impl Exprs {
 fn node_derivative(pool: &mut Exprs, e: ExprId, memo: &FxHashMap<ExprId, ExprId>) -> ExprId {
     let of = |a: ExprId| Some(memo[&a]).filter(|&d| d != Exprs::ZERO);
     let derivative = match pool.node(e) {
-        Node::Unary(op, a) => of(a).and_then(|da| rules::unary(pool, op, &a, &e, da)),
-        Node::Binary(op, a, b) => rules::binary(pool, op, (&a, &b, &e), of(a), of(b)),
-        Node::If(c, a, b) => rules::branch(pool, c, of(a), of(b)),
-        Node::Homotopy(a, b) => Some(pool.homotopy(memo[&a], memo[&b])),
-        Node::Call(function, output, args) => Some(call_derivative(pool, function, output, args, memo)),
+        ExprNode::Unary(op, a) => of(a).and_then(|da| rules::unary(pool, op, &a, &e, da)),
+        ExprNode::Binary(op, a, b) => rules::binary(pool, op, (&a, &b, &e), of(a), of(b)),
+        ExprNode::If(c, a, b) => rules::branch(pool, c, of(a), of(b)),
+        ExprNode::Homotopy(a, b) => Some(pool.homotopy(memo[&a], memo[&b])),
+        ExprNode::Call(function, output, args) => Some(call_derivative(pool, function, output, args, memo)),
         _ => None,
     };
     derivative.unwrap_or(Exprs::ZERO)
@@ -106,7 +106,7 @@ fn call_derivative(
     pool: &mut Exprs,
     function: FunctionId,
     output: u32,
-    args: Args,
+    args: ArgumentRange,
     memo: &FxHashMap<ExprId, ExprId>,
 ) -> ExprId {
     let args = pool.args(args).to_vec();
@@ -123,19 +123,19 @@ fn call_derivative(
     sum
 }
 
-impl Algebra for Exprs {
+impl ExprAlgebra for Exprs {
     type E = ExprId;
 
     fn num(&mut self, value: f64) -> ExprId {
         Exprs::num(self, value)
     }
-    fn unary(&mut self, op: Unary, a: ExprId) -> ExprId {
+    fn unary(&mut self, op: UnaryFunction, a: ExprId) -> ExprId {
         Exprs::unary(self, op, a)
     }
-    fn binary(&mut self, op: Binary, a: ExprId, b: ExprId) -> ExprId {
+    fn binary(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         Exprs::binary(self, op, a, b)
     }
-    fn rel(&mut self, rel: Rel, a: ExprId, b: ExprId) -> ExprId {
+    fn rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> ExprId {
         Exprs::rel(self, rel, a, b)
     }
     fn if_(&mut self, c: ExprId, a: ExprId, b: ExprId) -> ExprId {

@@ -7,27 +7,35 @@ use proptest::prelude::*;
 enum Tree {
     Num(f64),
     Var(u32),
-    Unary(Unary, Box<Tree>),
-    Binary(Binary, Box<Tree>, Box<Tree>),
-    If(Rel, Box<Tree>, Box<Tree>, Box<Tree>),
+    Unary(UnaryFunction, Box<Tree>),
+    Binary(BinaryFunction, Box<Tree>, Box<Tree>),
+    If(RelationalOp, Box<Tree>, Box<Tree>, Box<Tree>),
 }
 
-const UNARY: [Unary; 12] = [
-    Unary::Neg,
-    Unary::Abs,
-    Unary::Sign,
-    Unary::Sqrt,
-    Unary::Exp,
-    Unary::Log,
-    Unary::Sin,
-    Unary::Cos,
-    Unary::Atan,
-    Unary::Tanh,
-    Unary::Asin,
-    Unary::Cosh,
+const UNARY: [UnaryFunction; 12] = [
+    UnaryFunction::Neg,
+    UnaryFunction::Abs,
+    UnaryFunction::Sign,
+    UnaryFunction::Sqrt,
+    UnaryFunction::Exp,
+    UnaryFunction::Log,
+    UnaryFunction::Sin,
+    UnaryFunction::Cos,
+    UnaryFunction::Atan,
+    UnaryFunction::Tanh,
+    UnaryFunction::Asin,
+    UnaryFunction::Cosh,
 ];
-const BINARY: [Binary; 8] =
-    [Binary::Add, Binary::Sub, Binary::Mul, Binary::Div, Binary::Pow, Binary::Atan2, Binary::Min, Binary::Max];
+const BINARY: [BinaryFunction; 8] = [
+    BinaryFunction::Add,
+    BinaryFunction::Sub,
+    BinaryFunction::Mul,
+    BinaryFunction::Div,
+    BinaryFunction::Pow,
+    BinaryFunction::Atan2,
+    BinaryFunction::Min,
+    BinaryFunction::Max,
+];
 
 fn tree() -> impl Strategy<Value = Tree> {
     let numbers = prop::sample::select(vec![0.0, 1.0, -1.0, 2.0, 0.5, -3.0, 0.25, 1.7]);
@@ -37,7 +45,7 @@ fn tree() -> impl Strategy<Value = Tree> {
         prop_oneof![
             (prop::sample::select(UNARY.to_vec()), boxed()).prop_map(|(op, a)| Tree::Unary(op, a)),
             (prop::sample::select(BINARY.to_vec()), boxed(), boxed()).prop_map(|(op, a, b)| Tree::Binary(op, a, b)),
-            (boxed(), boxed(), boxed()).prop_map(|(a, b, c)| Tree::If(Rel::Lt, a, b, c)),
+            (boxed(), boxed(), boxed()).prop_map(|(a, b, c)| Tree::If(RelationalOp::Lt, a, b, c)),
         ]
     })
 }
@@ -77,13 +85,13 @@ fn value(tree: &Tree, x: &[f64]) -> f64 {
         }
     };
     // The sign of a zero is not kept, and the angle of a point shows it.
-    let cut = matches!(tree, Tree::Binary(Binary::Atan2, ..)) && value.abs() > 3.1;
+    let cut = matches!(tree, Tree::Binary(BinaryFunction::Atan2, ..)) && value.abs() > 3.1;
     if value.is_finite() && !cut { value } else { f64::NAN }
 }
 
 fn at(p: &Exprs, e: ExprId, x: &[f64]) -> f64 {
     p.eval(e, &mut |node| match node {
-        Node::Var(v) => x[v.index()],
+        ExprNode::Var(v) => x[v.index()],
         _ => f64::NAN,
     })
 }
@@ -172,17 +180,17 @@ fn time_derivatives_ask_for_leaves() {
     let (x, k, t) = (p.var(VarId(0)), p.var(VarId(1)), p.time());
     let product = p.mul(k, x);
     let sum = p.add(product, t);
-    let mut leaf = |p: &mut Exprs, leaf: Leaf| match leaf {
-        Leaf::Var(VarId(0)) => Some(p.der(VarId(0))),
-        Leaf::Var(_) => Some(Exprs::ZERO),
-        Leaf::Der(_) => None,
+    let mut leaf = |p: &mut Exprs, leaf: DerivativeLeaf| match leaf {
+        DerivativeLeaf::Var(VarId(0)) => Some(p.der(VarId(0))),
+        DerivativeLeaf::Var(_) => Some(Exprs::ZERO),
+        DerivativeLeaf::Der(_) => None,
     };
     let first = p.time_derivative(sum, &mut leaf).expect("differentiable");
     let dx = p.der(VarId(0));
     let slope = p.mul(k, dx);
     let expected = p.add(slope, Exprs::ONE);
     assert_eq!(first, expected);
-    assert_eq!(p.time_derivative(first, &mut leaf), Err(Leaf::Der(VarId(0))));
+    assert_eq!(p.time_derivative(first, &mut leaf), Err(DerivativeLeaf::Der(VarId(0))));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Expressions from text, for tests.
 
-use super::{Binary, ExprId, Exprs, Rel, Unary, VarId};
-use bramah_syntax::ast::{BinaryOp, Expr, ExprKind, Reference, UnaryOp};
+use super::{BinaryFunction, ExprId, Exprs, RelationalOp, UnaryFunction, VarId};
+use bramah_syntax::ast::{BinaryOp, ComponentReference, Expr, ExprKind, UnaryOp};
 use bramah_syntax::diag::FileId;
 
 /// The expression that a text describes. Panics on what it does not know.
@@ -41,18 +41,18 @@ fn build(pool: &mut Exprs, tree: &Expr, find: &dyn Fn(&str) -> VarId) -> ExprId 
     }
 }
 
-fn name(reference: &Reference) -> &'static str {
+fn name(reference: &ComponentReference) -> &'static str {
     reference.parts[0].name.name.as_str()
 }
 
 fn binary(pool: &mut Exprs, op: BinaryOp, a: ExprId, b: ExprId) -> ExprId {
     let rel = match op {
-        BinaryOp::Lt => Rel::Lt,
-        BinaryOp::Le => Rel::Le,
-        BinaryOp::Gt => Rel::Gt,
-        BinaryOp::Ge => Rel::Ge,
-        BinaryOp::Eq => Rel::Eq,
-        BinaryOp::Ne => Rel::Ne,
+        BinaryOp::Lt => RelationalOp::Lt,
+        BinaryOp::Le => RelationalOp::Le,
+        BinaryOp::Gt => RelationalOp::Gt,
+        BinaryOp::Ge => RelationalOp::Ge,
+        BinaryOp::Eq => RelationalOp::Eq,
+        BinaryOp::Ne => RelationalOp::Ne,
         BinaryOp::Add => return pool.add(a, b),
         BinaryOp::Sub => return pool.sub(a, b),
         BinaryOp::Mul => return pool.mul(a, b),
@@ -72,25 +72,25 @@ fn call(pool: &mut Exprs, function: &str, args: &[Expr], find: &dyn Fn(&str) -> 
     }
     let args: Vec<ExprId> = args.iter().map(|arg| build(pool, arg, find)).collect();
     let op = match function {
-        "min" => return pool.binary(Binary::Min, args[0], args[1]),
-        "max" => return pool.binary(Binary::Max, args[0], args[1]),
-        "atan2" => return pool.binary(Binary::Atan2, args[0], args[1]),
-        "abs" => Unary::Abs,
-        "sign" => Unary::Sign,
-        "sqrt" => Unary::Sqrt,
-        "exp" => Unary::Exp,
-        "log" => Unary::Log,
-        "log10" => Unary::Log10,
-        "sin" => Unary::Sin,
-        "cos" => Unary::Cos,
-        "tan" => Unary::Tan,
-        "asin" => Unary::Asin,
-        "acos" => Unary::Acos,
-        "atan" => Unary::Atan,
-        "sinh" => Unary::Sinh,
-        "cosh" => Unary::Cosh,
-        "tanh" => Unary::Tanh,
-        "floor" => Unary::Floor,
+        "min" => return pool.binary(BinaryFunction::Min, args[0], args[1]),
+        "max" => return pool.binary(BinaryFunction::Max, args[0], args[1]),
+        "atan2" => return pool.binary(BinaryFunction::Atan2, args[0], args[1]),
+        "abs" => UnaryFunction::Abs,
+        "sign" => UnaryFunction::Sign,
+        "sqrt" => UnaryFunction::Sqrt,
+        "exp" => UnaryFunction::Exp,
+        "log" => UnaryFunction::Log,
+        "log10" => UnaryFunction::Log10,
+        "sin" => UnaryFunction::Sin,
+        "cos" => UnaryFunction::Cos,
+        "tan" => UnaryFunction::Tan,
+        "asin" => UnaryFunction::Asin,
+        "acos" => UnaryFunction::Acos,
+        "atan" => UnaryFunction::Atan,
+        "sinh" => UnaryFunction::Sinh,
+        "cosh" => UnaryFunction::Cosh,
+        "tanh" => UnaryFunction::Tanh,
+        "floor" => UnaryFunction::Floor,
         other => panic!("not in tests: {other}"),
     };
     pool.unary(op, args[0])

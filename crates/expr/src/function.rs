@@ -3,16 +3,16 @@
 //! Arrays are laid out row-major in consecutive slots, with sizes known when the function is built (one [`Function`]
 //! per combination of argument sizes). Slots `0..inputs` are the scalarised inputs.
 
-use super::{Binary, FunctionId, Rel, Unary};
+use super::{BinaryFunction, FunctionId, RelationalOp, UnaryFunction};
 use std::sync::Arc;
 
 /// A function that is carried out in Rust: the same bits for the same arguments, however often it is asked.
-pub trait External: std::fmt::Debug + Send + Sync {
+pub trait ExternalFunction: std::fmt::Debug + Send + Sync {
     /// One output; not a number where there is none.
     fn value(&self, output: usize, args: &[f64]) -> f64;
 
     /// The derivatives of all outputs by one argument, as a function of the same arguments; `None` where they are 0.
-    fn partial(&self, input: usize) -> Option<Arc<dyn External>>;
+    fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>>;
 
     /// What went wrong in the last call, where it gave no number.
     fn trouble(&self) -> Option<String> {
@@ -27,9 +27,9 @@ pub trait External: std::fmt::Debug + Send + Sync {
 
 /// A handle of such a function; two are equal where they are the same one.
 #[derive(Clone, Debug)]
-pub struct Handle(pub Arc<dyn External>);
+pub struct ExternalFunctionHandle(pub Arc<dyn ExternalFunction>);
 
-impl PartialEq for Handle {
+impl PartialEq for ExternalFunctionHandle {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.0, &other.0)
     }
@@ -37,9 +37,9 @@ impl PartialEq for Handle {
 
 impl Function {
     /// The function that is carried out in Rust, where this one only calls it.
-    pub fn external(&self) -> Option<&dyn External> {
+    pub fn external(&self) -> Option<&dyn ExternalFunction> {
         self.body.iter().find_map(|statement| match statement {
-            Stmt::Assign(_, Term::External(function, ..)) => Some(&*function.0),
+            SlotStatement::Assign(_, SlotExpr::External(function, ..)) => Some(&*function.0),
             _ => None,
         })
     }
@@ -57,14 +57,14 @@ pub struct Function {
     /// The slot of each scalar output.
     pub outputs: Vec<u32>,
     /// The program.
-    pub body: Vec<Stmt>,
+    pub body: Vec<SlotStatement>,
 }
 
 /// A statement.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Stmt {
+pub enum SlotStatement {
     /// `slot := value`
-    Assign(u32, Term),
+    Assign(u32, SlotExpr),
     /// `slots[base + offset] := value`; the offset is checked against `len`.
     AssignAt {
         /// First slot of the array.
@@ -72,47 +72,47 @@ pub enum Stmt {
         /// Number of slots of the array.
         len: u32,
         /// Zero-based row-major offset.
-        offset: Term,
+        offset: SlotExpr,
         /// The value.
-        value: Term,
+        value: SlotExpr,
     },
     /// Outputs of another function into slots (`None` skips one).
     Call {
         /// The function.
         function: FunctionId,
         /// Its scalar arguments.
-        args: Vec<Term>,
+        args: Vec<SlotExpr>,
         /// Where its scalar outputs go, by output number.
         outputs: Vec<Option<u32>>,
     },
     /// `if`
-    If(Vec<(Term, Vec<Stmt>)>, Vec<Stmt>),
+    If(Vec<(SlotExpr, Vec<SlotStatement>)>, Vec<SlotStatement>),
     /// `for slot in from:step:to`, bounds evaluated once.
     For {
         /// The loop variable.
         slot: u32,
         /// First value.
-        from: Term,
+        from: SlotExpr,
         /// Step.
-        step: Term,
+        step: SlotExpr,
         /// Last value.
-        to: Term,
+        to: SlotExpr,
         /// The body.
-        body: Vec<Stmt>,
+        body: Vec<SlotStatement>,
     },
     /// `while`
-    While(Term, Vec<Stmt>),
+    While(SlotExpr, Vec<SlotStatement>),
     /// `break`
     Break,
     /// `return`
     Return,
     /// `assert(condition, message)`: a failed one makes the outputs NaN and stops the call.
-    Assert(Term, String),
+    Assert(SlotExpr, String),
 }
 
 /// A scalar expression over slots.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Term {
+pub enum SlotExpr {
     /// A number.
     Num(f64),
     /// A slot.
@@ -124,18 +124,18 @@ pub enum Term {
         /// Number of slots.
         len: u32,
         /// Zero-based row-major offset.
-        offset: Box<Term>,
+        offset: Box<SlotExpr>,
     },
     /// A function of one argument.
-    Unary(Unary, Box<Term>),
+    Unary(UnaryFunction, Box<SlotExpr>),
     /// A function of two arguments.
-    Binary(Binary, Box<Term>, Box<Term>),
+    Binary(BinaryFunction, Box<SlotExpr>, Box<SlotExpr>),
     /// A relation.
-    Rel(Rel, Box<Term>, Box<Term>),
+    Rel(RelationalOp, Box<SlotExpr>, Box<SlotExpr>),
     /// Only the chosen branch is evaluated.
-    If(Box<Term>, Box<Term>, Box<Term>),
+    If(Box<SlotExpr>, Box<SlotExpr>, Box<SlotExpr>),
     /// One scalar output of another function.
-    Call(FunctionId, u32, Vec<Term>),
+    Call(FunctionId, u32, Vec<SlotExpr>),
     /// One output of a function carried out in Rust.
-    External(Handle, u32, Vec<Term>),
+    External(ExternalFunctionHandle, u32, Vec<SlotExpr>),
 }

@@ -3,7 +3,7 @@
 //! Slots start as 0. A call that goes on for too long, nests too deeply, leaves an array or fails an `assert` ends at
 //! once; its outputs are then NaN, so that the solver treats the point as one where the model has no value.
 
-use super::function::{Function, Stmt, Term};
+use super::function::{Function, SlotExpr, SlotStatement};
 use super::{FunctionId, math};
 
 /// Statements and loop turns that one outermost call may take, calls inside it included.
@@ -14,7 +14,7 @@ pub const DEPTH_LIMIT: u32 = 200;
 
 /// Why a call has no value.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Failure {
+pub enum CallFailure {
     /// More than [`STEP_BUDGET`] steps.
     Steps {
         /// The function that ran when the budget was used up.
@@ -43,15 +43,15 @@ pub enum Failure {
     },
 }
 
-impl std::fmt::Display for Failure {
+impl std::fmt::Display for CallFailure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            Failure::Steps { function } => write!(f, "`{function}` did not end within {STEP_BUDGET} steps"),
-            Failure::Depth { function } => write!(f, "`{function}` is called more than {DEPTH_LIMIT} levels deep"),
-            Failure::Index { function, offset, len } => {
+            CallFailure::Steps { function } => write!(f, "`{function}` did not end within {STEP_BUDGET} steps"),
+            CallFailure::Depth { function } => write!(f, "`{function}` is called more than {DEPTH_LIMIT} levels deep"),
+            CallFailure::Index { function, offset, len } => {
                 write!(f, "element {} of an array of {len} in `{function}`", offset + 1.0)
             }
-            Failure::Assert { function, message } => write!(f, "{message} (in `{function}`)"),
+            CallFailure::Assert { function, message } => write!(f, "{message} (in `{function}`)"),
         }
     }
 }
@@ -66,44 +66,44 @@ impl Function {
     }
 
     /// As [`Function::call`], with the reason when there is no value; `out` is then not written.
-    pub fn try_call(&self, all: &[Function], args: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-        Run { all, left: STEP_BUDGET, depth: 0 }.call(self, args.to_vec(), |output, value| out[output] = value)
+    pub fn try_call(&self, all: &[Function], args: &[f64], out: &mut [f64]) -> Result<(), CallFailure> {
+        Interpreter { all, left: STEP_BUDGET, depth: 0 }.call(self, args.to_vec(), |output, value| out[output] = value)
     }
 }
 
 /// What ended a list of statements.
-enum Flow {
+enum ExecutionFlow {
     Next,
     Break,
     Return,
 }
 
 /// One outermost call.
-struct Run<'a> {
+struct Interpreter<'a> {
     all: &'a [Function],
     left: u64,
     depth: u32,
 }
 
 /// One running function.
-struct Frame<'a> {
+struct StackFrame<'a> {
     function: &'a Function,
     slots: Vec<f64>,
 }
 
-impl<'a> Run<'a> {
+impl<'a> Interpreter<'a> {
     fn call(
         &mut self,
         function: &'a Function,
         mut args: Vec<f64>,
         mut result: impl FnMut(usize, f64),
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CallFailure> {
         if self.depth == DEPTH_LIMIT {
-            return Err(Failure::Depth { function: function.name.clone() });
+            return Err(CallFailure::Depth { function: function.name.clone() });
         }
         self.depth += 1;
         args.resize(function.slots as usize, 0.0);
-        let mut frame = Frame { function, slots: args };
+        let mut frame = StackFrame { function, slots: args };
         self.statements(&mut frame, &function.body)?;
         for (output, &slot) in function.outputs.iter().enumerate() {
             result(output, frame.slots[slot as usize]);
@@ -112,34 +112,38 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    fn step(&mut self, frame: &Frame) -> Result<(), Failure> {
+    fn step(&mut self, frame: &StackFrame) -> Result<(), CallFailure> {
         if self.left == 0 {
-            return Err(Failure::Steps { function: frame.function.name.clone() });
+            return Err(CallFailure::Steps { function: frame.function.name.clone() });
         }
         self.left -= 1;
         Ok(())
     }
 
-    fn statements(&mut self, frame: &mut Frame<'a>, body: &'a [Stmt]) -> Result<Flow, Failure> {
+    fn statements(
+        &mut self,
+        frame: &mut StackFrame<'a>,
+        body: &'a [SlotStatement],
+    ) -> Result<ExecutionFlow, CallFailure> {
         for stmt in body {
             self.step(frame)?;
             match self.statement(frame, stmt)? {
-                Flow::Next => {}
+                ExecutionFlow::Next => {}
                 ended => return Ok(ended),
             }
         }
-        Ok(Flow::Next)
+        Ok(ExecutionFlow::Next)
     }
 
-    fn statement(&mut self, frame: &mut Frame<'a>, stmt: &'a Stmt) -> Result<Flow, Failure> {
+    fn statement(&mut self, frame: &mut StackFrame<'a>, stmt: &'a SlotStatement) -> Result<ExecutionFlow, CallFailure> {
         match stmt {
-            Stmt::Assign(slot, value) => frame.slots[*slot as usize] = self.term(frame, value)?,
-            Stmt::AssignAt { base, len, offset, value } => {
+            SlotStatement::Assign(slot, value) => frame.slots[*slot as usize] = self.term(frame, value)?,
+            SlotStatement::AssignAt { base, len, offset, value } => {
                 let value = self.term(frame, value)?;
                 let at = self.element(frame, *base, *len, offset)?;
                 frame.slots[at] = value;
             }
-            Stmt::Call { function, args, outputs } => {
+            SlotStatement::Call { function, args, outputs } => {
                 let args = self.terms(frame, args)?;
                 let slots = &mut frame.slots;
                 self.call(self.function(*function), args, |output, value| {
@@ -148,7 +152,7 @@ impl<'a> Run<'a> {
                     }
                 })?;
             }
-            Stmt::If(branches, otherwise) => {
+            SlotStatement::If(branches, otherwise) => {
                 for (condition, body) in branches {
                     if self.term(frame, condition)? != 0.0 {
                         return self.statements(frame, body);
@@ -156,27 +160,29 @@ impl<'a> Run<'a> {
                 }
                 return self.statements(frame, otherwise);
             }
-            Stmt::For { slot, from, step, to, body } => return self.count(frame, *slot, [from, step, to], body),
-            Stmt::While(condition, body) => return self.repeat(frame, condition, body),
-            Stmt::Break => return Ok(Flow::Break),
-            Stmt::Return => return Ok(Flow::Return),
-            Stmt::Assert(condition, message) => {
+            SlotStatement::For { slot, from, step, to, body } => {
+                return self.count(frame, *slot, [from, step, to], body);
+            }
+            SlotStatement::While(condition, body) => return self.repeat(frame, condition, body),
+            SlotStatement::Break => return Ok(ExecutionFlow::Break),
+            SlotStatement::Return => return Ok(ExecutionFlow::Return),
+            SlotStatement::Assert(condition, message) => {
                 if self.term(frame, condition)? == 0.0 {
                     let function = frame.function.name.clone();
-                    return Err(Failure::Assert { function, message: message.clone() });
+                    return Err(CallFailure::Assert { function, message: message.clone() });
                 }
             }
         }
-        Ok(Flow::Next)
+        Ok(ExecutionFlow::Next)
     }
 
     fn count(
         &mut self,
-        frame: &mut Frame<'a>,
+        frame: &mut StackFrame<'a>,
         slot: u32,
-        range: [&'a Term; 3],
-        body: &'a [Stmt],
-    ) -> Result<Flow, Failure> {
+        range: [&'a SlotExpr; 3],
+        body: &'a [SlotStatement],
+    ) -> Result<ExecutionFlow, CallFailure> {
         let from = self.term(frame, range[0])?;
         let step = self.term(frame, range[1])?;
         let to = self.term(frame, range[2])?;
@@ -187,57 +193,62 @@ impl<'a> Run<'a> {
             self.step(frame)?;
             frame.slots[slot as usize] = from + turn * step;
             match self.statements(frame, body)? {
-                Flow::Next => {}
-                Flow::Break => break,
-                Flow::Return => return Ok(Flow::Return),
+                ExecutionFlow::Next => {}
+                ExecutionFlow::Break => break,
+                ExecutionFlow::Return => return Ok(ExecutionFlow::Return),
             }
             turn += 1.0;
         }
-        Ok(Flow::Next)
+        Ok(ExecutionFlow::Next)
     }
 
-    fn repeat(&mut self, frame: &mut Frame<'a>, condition: &'a Term, body: &'a [Stmt]) -> Result<Flow, Failure> {
+    fn repeat(
+        &mut self,
+        frame: &mut StackFrame<'a>,
+        condition: &'a SlotExpr,
+        body: &'a [SlotStatement],
+    ) -> Result<ExecutionFlow, CallFailure> {
         while self.term(frame, condition)? != 0.0 {
             self.step(frame)?;
             match self.statements(frame, body)? {
-                Flow::Next => {}
-                Flow::Break => break,
-                Flow::Return => return Ok(Flow::Return),
+                ExecutionFlow::Next => {}
+                ExecutionFlow::Break => break,
+                ExecutionFlow::Return => return Ok(ExecutionFlow::Return),
             }
         }
-        Ok(Flow::Next)
+        Ok(ExecutionFlow::Next)
     }
 
     fn function(&self, id: FunctionId) -> &'a Function {
         &self.all[id.0 as usize]
     }
 
-    fn terms(&mut self, frame: &Frame<'a>, terms: &'a [Term]) -> Result<Vec<f64>, Failure> {
+    fn terms(&mut self, frame: &StackFrame<'a>, terms: &'a [SlotExpr]) -> Result<Vec<f64>, CallFailure> {
         terms.iter().map(|term| self.term(frame, term)).collect()
     }
 
-    fn term(&mut self, frame: &Frame<'a>, term: &'a Term) -> Result<f64, Failure> {
+    fn term(&mut self, frame: &StackFrame<'a>, term: &'a SlotExpr) -> Result<f64, CallFailure> {
         Ok(match term {
-            Term::Num(value) => *value,
-            Term::Slot(slot) => frame.slots[*slot as usize],
-            Term::At { base, len, offset } => {
+            SlotExpr::Num(value) => *value,
+            SlotExpr::Slot(slot) => frame.slots[*slot as usize],
+            SlotExpr::At { base, len, offset } => {
                 let at = self.element(frame, *base, *len, offset)?;
                 frame.slots[at]
             }
-            Term::Unary(op, a) => math::unary(*op, self.term(frame, a)?),
-            Term::Binary(op, a, b) => {
+            SlotExpr::Unary(op, a) => math::unary(*op, self.term(frame, a)?),
+            SlotExpr::Binary(op, a, b) => {
                 let a = self.term(frame, a)?;
                 math::binary(*op, a, self.term(frame, b)?)
             }
-            Term::Rel(rel, a, b) => {
+            SlotExpr::Rel(rel, a, b) => {
                 let a = self.term(frame, a)?;
                 math::truth(math::holds(*rel, a, self.term(frame, b)?))
             }
-            Term::If(c, a, b) => {
+            SlotExpr::If(c, a, b) => {
                 let branch = if self.term(frame, c)? == 0.0 { b } else { a };
                 self.term(frame, branch)?
             }
-            Term::Call(function, output, args) => {
+            SlotExpr::Call(function, output, args) => {
                 self.step(frame)?;
                 let args = self.terms(frame, args)?;
                 let mut found = f64::NAN;
@@ -248,21 +259,27 @@ impl<'a> Run<'a> {
                 })?;
                 found
             }
-            Term::External(function, output, args) => {
+            SlotExpr::External(function, output, args) => {
                 self.step(frame)?;
                 function.0.value(*output as usize, &self.terms(frame, args)?)
             }
         })
     }
 
-    fn element(&mut self, frame: &Frame<'a>, base: u32, len: u32, offset: &'a Term) -> Result<usize, Failure> {
+    fn element(
+        &mut self,
+        frame: &StackFrame<'a>,
+        base: u32,
+        len: u32,
+        offset: &'a SlotExpr,
+    ) -> Result<usize, CallFailure> {
         let offset = self.term(frame, offset)?;
         if offset >= 0.0 && offset < f64::from(len) {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and a u32")]
             let whole = offset as usize;
             return Ok(base as usize + whole);
         }
-        Err(Failure::Index { function: frame.function.name.clone(), offset, len })
+        Err(CallFailure::Index { function: frame.function.name.clone(), offset, len })
     }
 }
 

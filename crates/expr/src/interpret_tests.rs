@@ -1,23 +1,23 @@
 use super::*;
-use crate::{Binary, Exprs, Rel};
+use crate::{BinaryFunction, Exprs, RelationalOp};
 
-fn slot(s: u32) -> Term {
-    Term::Slot(s)
+fn slot(s: u32) -> SlotExpr {
+    SlotExpr::Slot(s)
 }
 
-fn num(x: f64) -> Term {
-    Term::Num(x)
+fn num(x: f64) -> SlotExpr {
+    SlotExpr::Num(x)
 }
 
-fn op(op: Binary, a: Term, b: Term) -> Term {
-    Term::Binary(op, Box::new(a), Box::new(b))
+fn op(op: BinaryFunction, a: SlotExpr, b: SlotExpr) -> SlotExpr {
+    SlotExpr::Binary(op, Box::new(a), Box::new(b))
 }
 
-fn rel(rel: Rel, a: Term, b: Term) -> Term {
-    Term::Rel(rel, Box::new(a), Box::new(b))
+fn rel(rel: RelationalOp, a: SlotExpr, b: SlotExpr) -> SlotExpr {
+    SlotExpr::Rel(rel, Box::new(a), Box::new(b))
 }
 
-fn function(inputs: u32, slots: u32, output: u32, body: Vec<Stmt>) -> Function {
+fn function(inputs: u32, slots: u32, output: u32, body: Vec<SlotStatement>) -> Function {
     Function { name: "f".into(), inputs, slots, outputs: vec![output], body }
 }
 
@@ -52,52 +52,67 @@ fn check_slope(p: &Exprs, f: FunctionId, derivative: FunctionId, args: &[f64], i
 
 /// `y := 1; for i in 1:3 loop y := y*x + i; end for`
 fn horner() -> Function {
-    let step = op(Binary::Add, op(Binary::Mul, slot(1), slot(0)), slot(2));
+    let step = op(BinaryFunction::Add, op(BinaryFunction::Mul, slot(1), slot(0)), slot(2));
     let body = vec![
-        Stmt::Assign(1, num(1.0)),
-        Stmt::For { slot: 2, from: num(1.0), step: num(1.0), to: num(3.0), body: vec![Stmt::Assign(1, step)] },
+        SlotStatement::Assign(1, num(1.0)),
+        SlotStatement::For {
+            slot: 2,
+            from: num(1.0),
+            step: num(1.0),
+            to: num(3.0),
+            body: vec![SlotStatement::Assign(1, step)],
+        },
     ];
     function(1, 3, 1, body)
 }
 
 /// Newton's square root: `while abs(y*y - x) > 1e-12 loop y := (y + x/y)/2`
 fn newton() -> Function {
-    let error = op(Binary::Sub, op(Binary::Mul, slot(1), slot(1)), slot(0));
-    let far = rel(Rel::Gt, Term::Unary(crate::Unary::Abs, Box::new(error)), num(1e-12));
-    let better = op(Binary::Div, op(Binary::Add, slot(1), op(Binary::Div, slot(0), slot(1))), num(2.0));
+    let error = op(BinaryFunction::Sub, op(BinaryFunction::Mul, slot(1), slot(1)), slot(0));
+    let far = rel(RelationalOp::Gt, SlotExpr::Unary(crate::UnaryFunction::Abs, Box::new(error)), num(1e-12));
+    let better =
+        op(BinaryFunction::Div, op(BinaryFunction::Add, slot(1), op(BinaryFunction::Div, slot(0), slot(1))), num(2.0));
     // Two further turns, so that the tangents have converged too.
     let body = vec![
-        Stmt::Assign(1, slot(0)),
-        Stmt::While(far, vec![Stmt::Assign(1, better.clone())]),
-        Stmt::Assign(1, better.clone()),
-        Stmt::Assign(1, better),
+        SlotStatement::Assign(1, slot(0)),
+        SlotStatement::While(far, vec![SlotStatement::Assign(1, better.clone())]),
+        SlotStatement::Assign(1, better.clone()),
+        SlotStatement::Assign(1, better),
     ];
     function(1, 2, 1, body)
 }
 
 /// `y := if n < 0.5 then 1 else x*f(x, n - 1)`, calling itself.
 fn recursive(own: FunctionId) -> Function {
-    let call = Term::Call(own, 0, vec![slot(0), op(Binary::Sub, slot(1), num(1.0))]);
-    let y = Term::If(
-        Box::new(rel(Rel::Lt, slot(1), num(0.5))),
+    let call = SlotExpr::Call(own, 0, vec![slot(0), op(BinaryFunction::Sub, slot(1), num(1.0))]);
+    let y = SlotExpr::If(
+        Box::new(rel(RelationalOp::Lt, slot(1), num(0.5))),
         Box::new(num(1.0)),
-        Box::new(op(Binary::Mul, slot(0), call)),
+        Box::new(op(BinaryFunction::Mul, slot(0), call)),
     );
-    function(2, 3, 2, vec![Stmt::Assign(2, y)])
+    function(2, 3, 2, vec![SlotStatement::Assign(2, y)])
 }
 
 /// Fills `a[3]` with powers of x, sums it up to a break.
 fn arrays() -> Function {
-    let index = |k: u32| Box::new(op(Binary::Sub, slot(k), num(1.0)));
-    let element = Term::At { base: 2, len: 3, offset: index(5) };
-    let fill = Stmt::AssignAt { base: 2, len: 3, offset: *index(5), value: op(Binary::Pow, slot(0), slot(5)) };
-    let stop = Stmt::If(vec![(rel(Rel::Gt, slot(5), num(2.5)), vec![Stmt::Break])], vec![]);
-    let turn = |body| Stmt::For { slot: 5, from: num(1.0), step: num(1.0), to: num(3.0), body };
+    let index = |k: u32| Box::new(op(BinaryFunction::Sub, slot(k), num(1.0)));
+    let element = SlotExpr::At { base: 2, len: 3, offset: index(5) };
+    let fill = SlotStatement::AssignAt {
+        base: 2,
+        len: 3,
+        offset: *index(5),
+        value: op(BinaryFunction::Pow, slot(0), slot(5)),
+    };
+    let stop = SlotStatement::If(vec![(rel(RelationalOp::Gt, slot(5), num(2.5)), vec![SlotStatement::Break])], vec![]);
+    let turn = |body| SlotStatement::For { slot: 5, from: num(1.0), step: num(1.0), to: num(3.0), body };
     let body = vec![
         turn(vec![fill]),
-        turn(vec![Stmt::Assign(1, op(Binary::Add, slot(1), element)), stop]),
-        Stmt::If(vec![(rel(Rel::Gt, slot(0), num(0.0)), vec![Stmt::Return])], vec![Stmt::Assign(1, num(0.0))]),
-        Stmt::Assign(1, num(7.0)),
+        turn(vec![SlotStatement::Assign(1, op(BinaryFunction::Add, slot(1), element)), stop]),
+        SlotStatement::If(
+            vec![(rel(RelationalOp::Gt, slot(0), num(0.0)), vec![SlotStatement::Return])],
+            vec![SlotStatement::Assign(1, num(0.0))],
+        ),
+        SlotStatement::Assign(1, num(7.0)),
     ];
     function(1, 6, 1, body)
 }
@@ -128,12 +143,12 @@ fn recursion_and_calls_are_differentiated() {
         3,
         2,
         vec![
-            Stmt::Call {
+            SlotStatement::Call {
                 function: FunctionId(0),
-                args: vec![op(Binary::Mul, slot(0), slot(1))],
+                args: vec![op(BinaryFunction::Mul, slot(0), slot(1))],
                 outputs: vec![Some(0)],
             },
-            Stmt::Assign(2, op(Binary::Mul, slot(0), slot(1))),
+            SlotStatement::Assign(2, op(BinaryFunction::Mul, slot(0), slot(1))),
         ],
     );
     check_derivatives(outer, vec![horner()], &[1.2, 0.7]);
@@ -155,10 +170,12 @@ fn expressions_differentiate_through_calls() {
 #[test]
 fn failures_are_named_and_give_nan() {
     let mut p = Exprs::default();
-    let endless = function(1, 2, 1, vec![Stmt::While(num(1.0), vec![])]);
-    let deep = function(1, 2, 1, vec![Stmt::Assign(1, Term::Call(FunctionId(1), 0, vec![slot(0)]))]);
-    let outside = function(1, 3, 2, vec![Stmt::Assign(2, Term::At { base: 1, len: 2, offset: Box::new(slot(0)) })]);
-    let assert = function(1, 2, 1, vec![Stmt::Assert(rel(Rel::Gt, slot(0), num(5.0)), "too small".into())]);
+    let endless = function(1, 2, 1, vec![SlotStatement::While(num(1.0), vec![])]);
+    let deep = function(1, 2, 1, vec![SlotStatement::Assign(1, SlotExpr::Call(FunctionId(1), 0, vec![slot(0)]))]);
+    let outside =
+        function(1, 3, 2, vec![SlotStatement::Assign(2, SlotExpr::At { base: 1, len: 2, offset: Box::new(slot(0)) })]);
+    let assert =
+        function(1, 2, 1, vec![SlotStatement::Assert(rel(RelationalOp::Gt, slot(0), num(5.0)), "too small".into())]);
     for f in [endless, deep, outside, assert] {
         p.add_function(f);
     }

@@ -53,7 +53,7 @@ impl ExprId {
 
 /// Arguments of a call: a stretch of `Exprs::args`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Args {
+pub struct ArgumentRange {
     start: u32,
     len: u32,
 }
@@ -61,7 +61,7 @@ pub struct Args {
 /// Functions of one argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the mathematical functions of these names")]
-pub enum Unary {
+pub enum UnaryFunction {
     Neg,
     Not,
     Abs,
@@ -84,34 +84,34 @@ pub enum Unary {
     Floor,
 }
 
-impl Unary {
+impl UnaryFunction {
     /// All of them.
-    pub const ALL: [Unary; 18] = [
-        Unary::Neg,
-        Unary::Not,
-        Unary::Abs,
-        Unary::Sign,
-        Unary::Sqrt,
-        Unary::Exp,
-        Unary::Log,
-        Unary::Log10,
-        Unary::Sin,
-        Unary::Cos,
-        Unary::Tan,
-        Unary::Asin,
-        Unary::Acos,
-        Unary::Atan,
-        Unary::Sinh,
-        Unary::Cosh,
-        Unary::Tanh,
-        Unary::Floor,
+    pub const ALL: [UnaryFunction; 18] = [
+        UnaryFunction::Neg,
+        UnaryFunction::Not,
+        UnaryFunction::Abs,
+        UnaryFunction::Sign,
+        UnaryFunction::Sqrt,
+        UnaryFunction::Exp,
+        UnaryFunction::Log,
+        UnaryFunction::Log10,
+        UnaryFunction::Sin,
+        UnaryFunction::Cos,
+        UnaryFunction::Tan,
+        UnaryFunction::Asin,
+        UnaryFunction::Acos,
+        UnaryFunction::Atan,
+        UnaryFunction::Sinh,
+        UnaryFunction::Cosh,
+        UnaryFunction::Tanh,
+        UnaryFunction::Floor,
     ];
 }
 
 /// Functions of two arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the operators of these names")]
-pub enum Binary {
+pub enum BinaryFunction {
     Add,
     Sub,
     Mul,
@@ -128,7 +128,7 @@ pub enum Binary {
 /// written here so that messages show what the user wrote.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the relations of these names")]
-pub enum Rel {
+pub enum RelationalOp {
     Lt,
     Le,
     Gt,
@@ -139,7 +139,7 @@ pub enum Rel {
 
 /// One node. Build nodes through the methods of [`Exprs`], which simplify and share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Node {
+pub enum ExprNode {
     /// A number, by its bits.
     Num(u64),
     /// Simulated time in seconds.
@@ -151,13 +151,13 @@ pub enum Node {
     /// The value of a discrete-valued variable before the event.
     Pre(VarId),
     /// A function of one argument.
-    Unary(Unary, ExprId),
+    Unary(UnaryFunction, ExprId),
     /// A function of two arguments.
-    Binary(Binary, ExprId, ExprId),
+    Binary(BinaryFunction, ExprId, ExprId),
     /// A relation evaluated as it stands; makes no event (inside `noEvent`, or between discrete values).
-    Rel(Rel, ExprId, ExprId),
+    Rel(RelationalOp, ExprId, ExprId),
     /// A relation whose change is an event. `structure` replaces it by a discrete variable with a zero crossing.
-    EventRel(Rel, ExprId, ExprId),
+    EventRel(RelationalOp, ExprId, ExprId),
     /// `floor` whose change is an event. `structure` replaces it by a discrete variable with zero crossings.
     EventFloor(ExprId),
     /// If the condition is not 0 the second, else the third. Only the chosen one need be finite.
@@ -174,51 +174,51 @@ pub enum Node {
     /// `homotopy(actual, simplified)`.
     Homotopy(ExprId, ExprId),
     /// One output of a user function, with scalarised arguments.
-    Call(FunctionId, u32, Args),
+    Call(FunctionId, u32, ArgumentRange),
 }
 
 /// Two words a node instead of one write per field: the pool is asked for every node of every equation. The bytes of
 /// numbers are swapped, for small whole numbers differ in their highest bits only, which the hash would not spread.
-impl Hash for Node {
+impl Hash for ExprNode {
     fn hash<H: Hasher>(&self, state: &mut H) {
         let (kind, a, b) = match *self {
-            Node::Num(bits) => return state.write_u64(bits.swap_bytes()),
-            Node::Time => (1, 0, 0),
-            Node::Var(v) => (2, v.0, 0),
-            Node::Der(v) => (3, v.0, 0),
-            Node::Pre(v) => (4, v.0, 0),
-            Node::Unary(op, a) => (0x100 | op as u32, a.0, 0),
-            Node::Binary(op, a, b) => (0x200 | op as u32, a.0, b.0),
-            Node::Rel(op, a, b) => (0x300 | op as u32, a.0, b.0),
-            Node::EventRel(op, a, b) => (0x400 | op as u32, a.0, b.0),
-            Node::EventFloor(a) => (5, a.0, 0),
-            Node::If(c, a, b) => (c.0 ^ 0x8000_0000, a.0, b.0),
-            Node::Sample(a, b) => (6, a.0, b.0),
-            Node::Initial => (7, 0, 0),
-            Node::Terminal => (8, 0, 0),
-            Node::Homotopy(a, b) => (9, a.0, b.0),
-            Node::Delay(a, b) => (10, a.0, b.0),
-            Node::Call(f, output, args) => (f.0 ^ 0x4000_0000, output, args.start),
+            ExprNode::Num(bits) => return state.write_u64(bits.swap_bytes()),
+            ExprNode::Time => (1, 0, 0),
+            ExprNode::Var(v) => (2, v.0, 0),
+            ExprNode::Der(v) => (3, v.0, 0),
+            ExprNode::Pre(v) => (4, v.0, 0),
+            ExprNode::Unary(op, a) => (0x100 | op as u32, a.0, 0),
+            ExprNode::Binary(op, a, b) => (0x200 | op as u32, a.0, b.0),
+            ExprNode::Rel(op, a, b) => (0x300 | op as u32, a.0, b.0),
+            ExprNode::EventRel(op, a, b) => (0x400 | op as u32, a.0, b.0),
+            ExprNode::EventFloor(a) => (5, a.0, 0),
+            ExprNode::If(c, a, b) => (c.0 ^ 0x8000_0000, a.0, b.0),
+            ExprNode::Sample(a, b) => (6, a.0, b.0),
+            ExprNode::Initial => (7, 0, 0),
+            ExprNode::Terminal => (8, 0, 0),
+            ExprNode::Homotopy(a, b) => (9, a.0, b.0),
+            ExprNode::Delay(a, b) => (10, a.0, b.0),
+            ExprNode::Call(f, output, args) => (f.0 ^ 0x4000_0000, output, args.start),
         };
         state.write_u64(u64::from(kind));
         state.write_u64(u64::from(a) << 32 | u64::from(b));
     }
 }
 
-fn hash(node: &Node) -> u64 {
+fn hash(node: &ExprNode) -> u64 {
     FxBuildHasher.hash_one(node)
 }
 
 /// A pool of expressions. Node 0 is the number 0 and node 1 the number 1.
 #[derive(Clone, Debug)]
 pub struct Exprs {
-    nodes: Vec<Node>,
+    nodes: Vec<ExprNode>,
     /// Where each node stands: the ids alone, for the nodes are in the list already.
     index: HashTable<ExprId>,
     /// The node of each variable's value, 0 for none: half of all requests are for these.
     leaves: Vec<ExprId>,
     args: Vec<ExprId>,
-    arg_index: FxHashMap<Box<[ExprId]>, Args>,
+    arg_index: FxHashMap<Box<[ExprId]>, ArgumentRange>,
     /// The function that takes values and tangents and returns tangents, by original.
     tangents: FxHashMap<FunctionId, FunctionId>,
     /// The derivative of all outputs by one input, by original and input.
@@ -252,7 +252,7 @@ impl Exprs {
     pub const ONE: ExprId = ExprId(1);
 
     /// The node behind an id.
-    pub fn node(&self, e: ExprId) -> Node {
+    pub fn node(&self, e: ExprId) -> ExprNode {
         self.nodes[e.index()]
     }
 
@@ -267,12 +267,12 @@ impl Exprs {
     }
 
     /// The arguments of a call.
-    pub fn args(&self, args: Args) -> &[ExprId] {
+    pub fn args(&self, args: ArgumentRange) -> &[ExprId] {
         &self.args[args.start as usize..(args.start + args.len) as usize]
     }
 
     /// The id of exactly this node, without simplification.
-    pub fn intern(&mut self, node: Node) -> ExprId {
+    pub fn intern(&mut self, node: ExprNode) -> ExprId {
         let nodes = &self.nodes;
         let same = |e: &ExprId| nodes[e.index()] == node;
         match self.index.entry(hash(&node), same, |e| hash(&nodes[e.index()])) {
@@ -287,14 +287,14 @@ impl Exprs {
     }
 
     /// The id of exactly this node, if it is there.
-    fn find(&self, node: &Node) -> Option<ExprId> {
+    fn find(&self, node: &ExprNode) -> Option<ExprId> {
         self.index.find(hash(node), |e| self.nodes[e.index()] == *node).copied()
     }
 
     /// The value, if the node is a number.
     pub fn as_num(&self, e: ExprId) -> Option<f64> {
         match self.node(e) {
-            Node::Num(bits) => Some(f64::from_bits(bits)),
+            ExprNode::Num(bits) => Some(f64::from_bits(bits)),
             _ => None,
         }
     }
@@ -302,7 +302,7 @@ impl Exprs {
     /// A number. Minus zero becomes zero so that equal numbers are one node.
     pub fn num(&mut self, value: f64) -> ExprId {
         let value = if value == 0.0 { 0.0 } else { value };
-        self.intern(Node::Num(value.to_bits()))
+        self.intern(ExprNode::Num(value.to_bits()))
     }
 
     /// A truth value.
@@ -312,7 +312,7 @@ impl Exprs {
 
     /// Time.
     pub fn time(&mut self) -> ExprId {
-        self.intern(Node::Time)
+        self.intern(ExprNode::Time)
     }
 
     /// The value of a variable.
@@ -324,7 +324,7 @@ impl Exprs {
     }
 
     fn new_leaf(&mut self, v: VarId) -> ExprId {
-        let (e, known) = (self.intern(Node::Var(v)), self.leaves.len());
+        let (e, known) = (self.intern(ExprNode::Var(v)), self.leaves.len());
         // locals of functions have numbers far away
         if v.index() < 2 * known + 1024 {
             self.leaves.resize(known.max(v.index() + 1), Self::ZERO);
@@ -335,25 +335,25 @@ impl Exprs {
 
     /// The derivative of a variable.
     pub fn der(&mut self, v: VarId) -> ExprId {
-        self.intern(Node::Der(v))
+        self.intern(ExprNode::Der(v))
     }
 
     /// The value of a variable before the event.
     pub fn pre(&mut self, v: VarId) -> ExprId {
-        self.intern(Node::Pre(v))
+        self.intern(ExprNode::Pre(v))
     }
 
     /// A call of a user function; one node per output.
     pub fn call(&mut self, function: FunctionId, output: u32, args: &[ExprId]) -> ExprId {
         let args = self.intern_args(args);
-        self.intern(Node::Call(function, output, args))
+        self.intern(ExprNode::Call(function, output, args))
     }
 
-    fn intern_args(&mut self, args: &[ExprId]) -> Args {
+    fn intern_args(&mut self, args: &[ExprId]) -> ArgumentRange {
         if let Some(&a) = self.arg_index.get(args) {
             return a;
         }
-        let found = Args {
+        let found = ArgumentRange {
             start: u32::try_from(self.args.len()).expect("fewer than 2^32 arguments"),
             len: u32::try_from(args.len()).expect("fewer than 2^32 arguments"),
         };

@@ -3,11 +3,11 @@
 //! Truth values are 0 and 1; anything but 0 counts as true. The functions of one and two arguments that are more than
 //! one machine instruction exist as `extern "C"` functions, to be called from native code.
 
-use super::{Binary, Rel, Unary};
+use super::{BinaryFunction, RelationalOp, UnaryFunction};
 
 /// How a power with a given exponent is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Power {
+pub enum PowerMethod {
     /// Whole exponents of magnitude up to [`LARGEST_WHOLE_POWER`]: square and multiply from the lowest bit, and one
     /// division `1/x^n` at the end when the exponent is negative.
     Whole(i32),
@@ -22,18 +22,18 @@ pub enum Power {
 /// Powers up to this one are products.
 pub const LARGEST_WHOLE_POWER: i32 = 16;
 
-impl Power {
+impl PowerMethod {
     /// The way for this exponent. Native code that knows the exponent may write the same operations in line.
-    pub fn of(exponent: f64) -> Power {
+    pub fn of(exponent: f64) -> PowerMethod {
         if exponent == 0.5 {
-            Power::Sqrt
+            PowerMethod::Sqrt
         } else if exponent == 0.25 {
-            Power::FourthRoot
+            PowerMethod::FourthRoot
         } else if exponent.fract() == 0.0 && exponent.abs() <= f64::from(LARGEST_WHOLE_POWER) {
             #[allow(clippy::cast_possible_truncation, reason = "a whole number between -16 and 16")]
-            Power::Whole(exponent as i32)
+            PowerMethod::Whole(exponent as i32)
         } else {
-            Power::General
+            PowerMethod::General
         }
     }
 }
@@ -56,13 +56,13 @@ fn whole_power(x: f64, n: i32) -> f64 {
     if n < 0 { 1.0 / value } else { value }
 }
 
-/// `x^y`, by the way that [`Power::of`] names.
+/// `x^y`, by the way that [`PowerMethod::of`] names.
 pub extern "C" fn pow(x: f64, y: f64) -> f64 {
-    match Power::of(y) {
-        Power::Whole(n) => whole_power(x, n),
-        Power::Sqrt => x.sqrt(),
-        Power::FourthRoot => x.sqrt().sqrt(),
-        Power::General => x.powf(y),
+    match PowerMethod::of(y) {
+        PowerMethod::Whole(n) => whole_power(x, n),
+        PowerMethod::Sqrt => x.sqrt(),
+        PowerMethod::FourthRoot => x.sqrt().sqrt(),
+        PowerMethod::General => x.powf(y),
     }
 }
 
@@ -165,54 +165,54 @@ pub fn truth(value: bool) -> f64 {
 }
 
 /// The value of a function of one argument.
-pub fn unary(op: Unary, x: f64) -> f64 {
+pub fn unary(op: UnaryFunction, x: f64) -> f64 {
     match op {
-        Unary::Neg => -x,
-        Unary::Not => truth(x == 0.0),
-        Unary::Abs => x.abs(),
-        Unary::Sign => sign(x),
-        Unary::Sqrt => x.sqrt(),
-        Unary::Exp => exp(x),
-        Unary::Log => log(x),
-        Unary::Log10 => log10(x),
-        Unary::Sin => sin(x),
-        Unary::Cos => cos(x),
-        Unary::Tan => tan(x),
-        Unary::Asin => asin(x),
-        Unary::Acos => acos(x),
-        Unary::Atan => atan(x),
-        Unary::Sinh => sinh(x),
-        Unary::Cosh => cosh(x),
-        Unary::Tanh => tanh(x),
-        Unary::Floor => floor(x),
+        UnaryFunction::Neg => -x,
+        UnaryFunction::Not => truth(x == 0.0),
+        UnaryFunction::Abs => x.abs(),
+        UnaryFunction::Sign => sign(x),
+        UnaryFunction::Sqrt => x.sqrt(),
+        UnaryFunction::Exp => exp(x),
+        UnaryFunction::Log => log(x),
+        UnaryFunction::Log10 => log10(x),
+        UnaryFunction::Sin => sin(x),
+        UnaryFunction::Cos => cos(x),
+        UnaryFunction::Tan => tan(x),
+        UnaryFunction::Asin => asin(x),
+        UnaryFunction::Acos => acos(x),
+        UnaryFunction::Atan => atan(x),
+        UnaryFunction::Sinh => sinh(x),
+        UnaryFunction::Cosh => cosh(x),
+        UnaryFunction::Tanh => tanh(x),
+        UnaryFunction::Floor => floor(x),
     }
 }
 
 /// The value of a function of two arguments.
-pub fn binary(op: Binary, a: f64, b: f64) -> f64 {
+pub fn binary(op: BinaryFunction, a: f64, b: f64) -> f64 {
     match op {
-        Binary::Add => a + b,
-        Binary::Sub => a - b,
-        Binary::Mul => a * b,
-        Binary::Div => a / b,
-        Binary::Pow => pow(a, b),
-        Binary::Atan2 => atan2(a, b),
-        Binary::Min => min(a, b),
-        Binary::Max => max(a, b),
-        Binary::And => truth(a != 0.0 && b != 0.0),
-        Binary::Or => truth(a != 0.0 || b != 0.0),
+        BinaryFunction::Add => a + b,
+        BinaryFunction::Sub => a - b,
+        BinaryFunction::Mul => a * b,
+        BinaryFunction::Div => a / b,
+        BinaryFunction::Pow => pow(a, b),
+        BinaryFunction::Atan2 => atan2(a, b),
+        BinaryFunction::Min => min(a, b),
+        BinaryFunction::Max => max(a, b),
+        BinaryFunction::And => truth(a != 0.0 && b != 0.0),
+        BinaryFunction::Or => truth(a != 0.0 || b != 0.0),
     }
 }
 
 /// Whether a relation holds.
-pub fn holds(rel: Rel, a: f64, b: f64) -> bool {
+pub fn holds(rel: RelationalOp, a: f64, b: f64) -> bool {
     match rel {
-        Rel::Lt => a < b,
-        Rel::Le => a <= b,
-        Rel::Gt => a > b,
-        Rel::Ge => a >= b,
-        Rel::Eq => a == b,
-        Rel::Ne => a != b,
+        RelationalOp::Lt => a < b,
+        RelationalOp::Le => a <= b,
+        RelationalOp::Gt => a > b,
+        RelationalOp::Ge => a >= b,
+        RelationalOp::Eq => a == b,
+        RelationalOp::Ne => a != b,
     }
 }
 

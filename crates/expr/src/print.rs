@@ -4,7 +4,7 @@
 //! differently. Relations are printed without `noEvent`. What the pool shares is printed as often as it is used, so
 //! long expressions are cut off where a limit is set, and always at [`LONGEST`].
 
-use super::{Binary, ExprId, Exprs, Node, Rel, Unary, VarId};
+use super::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction, VarId};
 
 /// No text is longer than about this many bytes.
 pub const LONGEST: usize = 100_000;
@@ -23,7 +23,7 @@ mod bind {
 }
 
 /// What is still to be written; the last one is next.
-enum Piece {
+enum PrintPiece {
     Text(&'static str),
     Name(String),
     /// An expression that must bind at least so tightly; `true` when numbers mean truth values.
@@ -31,12 +31,12 @@ enum Piece {
 }
 
 /// A text being written.
-struct Printer<'a> {
+struct ExprPrinter<'a> {
     pool: &'a Exprs,
     names: &'a dyn Fn(VarId) -> String,
     /// Significant digits of numbers, or as many as it takes.
     digits: Option<usize>,
-    todo: Vec<Piece>,
+    todo: Vec<PrintPiece>,
     text: String,
 }
 
@@ -52,74 +52,74 @@ impl Exprs {
     }
 
     fn print_within(&self, e: ExprId, names: &dyn Fn(VarId) -> String, digits: Option<usize>, limit: usize) -> String {
-        let mut printer = Printer { pool: self, names, digits, todo: vec![], text: String::new() };
-        printer.todo.push(Piece::Expr(e, bind::WHOLE, false));
+        let mut printer = ExprPrinter { pool: self, names, digits, todo: vec![], text: String::new() };
+        printer.todo.push(PrintPiece::Expr(e, bind::WHOLE, false));
         while let Some(piece) = printer.todo.pop() {
             if printer.text.len() > limit {
                 printer.text.push_str("...");
                 break;
             }
             match piece {
-                Piece::Text(text) => printer.text.push_str(text),
-                Piece::Name(name) => printer.text.push_str(&name),
-                Piece::Expr(e, least, truth) => printer.expression(e, least, truth),
+                PrintPiece::Text(text) => printer.text.push_str(text),
+                PrintPiece::Name(name) => printer.text.push_str(&name),
+                PrintPiece::Expr(e, least, truth) => printer.expression(e, least, truth),
             }
         }
         printer.text
     }
 }
 
-impl Printer<'_> {
+impl ExprPrinter<'_> {
     fn expression(&mut self, e: ExprId, least: u8, truth: bool) {
         let (binding, pieces) = self.pieces(e, truth);
         let brackets = binding < least;
         if brackets {
-            self.todo.push(Piece::Text(")"));
+            self.todo.push(PrintPiece::Text(")"));
         }
         self.todo.extend(pieces.into_iter().rev());
         if brackets {
-            self.todo.push(Piece::Text("("));
+            self.todo.push(PrintPiece::Text("("));
         }
     }
 
     /// The parts of one node's text, and how tightly the whole binds.
-    fn pieces(&self, e: ExprId, truth: bool) -> (u8, Vec<Piece>) {
-        use Piece::{Expr, Name, Text};
+    fn pieces(&self, e: ExprId, truth: bool) -> (u8, Vec<PrintPiece>) {
+        use PrintPiece::{Expr, Name, Text};
         let name = |v: VarId| Name((self.names)(v));
         match self.pool.node(e) {
-            Node::Num(bits) => self.number(f64::from_bits(bits), truth),
-            Node::Time => (bind::PRIMARY, vec![Text("time")]),
-            Node::Var(v) => (bind::PRIMARY, vec![name(v)]),
-            Node::Der(v) => (bind::PRIMARY, vec![Text("der("), name(v), Text(")")]),
-            Node::Pre(v) => (bind::PRIMARY, vec![Text("pre("), name(v), Text(")")]),
-            Node::Initial => (bind::PRIMARY, vec![Text("initial()")]),
-            Node::Terminal => (bind::PRIMARY, vec![Text("terminal()")]),
-            Node::Unary(Unary::Neg, a) => (bind::SUM, vec![Text("-"), Expr(a, bind::PRODUCT, false)]),
-            Node::Unary(Unary::Not, a) => (bind::NOT, vec![Text("not "), Expr(a, bind::REL, true)]),
-            Node::Unary(op, a) => call(unary_name(op), &[a]),
-            Node::EventFloor(a) => call("floor", &[a]),
-            Node::Binary(op, a, b) => binary(op, a, b),
-            Node::Rel(rel, a, b) | Node::EventRel(rel, a, b) => {
+            ExprNode::Num(bits) => self.number(f64::from_bits(bits), truth),
+            ExprNode::Time => (bind::PRIMARY, vec![Text("time")]),
+            ExprNode::Var(v) => (bind::PRIMARY, vec![name(v)]),
+            ExprNode::Der(v) => (bind::PRIMARY, vec![Text("der("), name(v), Text(")")]),
+            ExprNode::Pre(v) => (bind::PRIMARY, vec![Text("pre("), name(v), Text(")")]),
+            ExprNode::Initial => (bind::PRIMARY, vec![Text("initial()")]),
+            ExprNode::Terminal => (bind::PRIMARY, vec![Text("terminal()")]),
+            ExprNode::Unary(UnaryFunction::Neg, a) => (bind::SUM, vec![Text("-"), Expr(a, bind::PRODUCT, false)]),
+            ExprNode::Unary(UnaryFunction::Not, a) => (bind::NOT, vec![Text("not "), Expr(a, bind::REL, true)]),
+            ExprNode::Unary(op, a) => call(unary_name(op), &[a]),
+            ExprNode::EventFloor(a) => call("floor", &[a]),
+            ExprNode::Binary(op, a, b) => binary(op, a, b),
+            ExprNode::Rel(rel, a, b) | ExprNode::EventRel(rel, a, b) => {
                 let sign = match rel {
-                    Rel::Lt => " < ",
-                    Rel::Le => " <= ",
-                    Rel::Gt => " > ",
-                    Rel::Ge => " >= ",
-                    Rel::Eq => " == ",
-                    Rel::Ne => " <> ",
+                    RelationalOp::Lt => " < ",
+                    RelationalOp::Le => " <= ",
+                    RelationalOp::Gt => " > ",
+                    RelationalOp::Ge => " >= ",
+                    RelationalOp::Eq => " == ",
+                    RelationalOp::Ne => " <> ",
                 };
                 (bind::REL, vec![Expr(a, bind::SUM, false), Text(sign), Expr(b, bind::SUM, false)])
             }
-            Node::If(c, a, b) => {
+            ExprNode::If(c, a, b) => {
                 let branch = |e| Expr(e, bind::WHOLE, truth);
                 let pieces =
                     vec![Text("if "), Expr(c, bind::OR, true), Text(" then "), branch(a), Text(" else "), branch(b)];
                 (bind::WHOLE, pieces)
             }
-            Node::Sample(a, b) => call("sample", &[a, b]),
-            Node::Delay(a, b) => call("delay", &[a, b]),
-            Node::Homotopy(a, b) => call("homotopy", &[a, b]),
-            Node::Call(function, output, args) => {
+            ExprNode::Sample(a, b) => call("sample", &[a, b]),
+            ExprNode::Delay(a, b) => call("delay", &[a, b]),
+            ExprNode::Homotopy(a, b) => call("homotopy", &[a, b]),
+            ExprNode::Call(function, output, args) => {
                 let function = &self.pool.functions[function.0 as usize];
                 let mut pieces = vec![Name(function.name.clone()), Text("(")];
                 arguments(&mut pieces, self.pool.args(args));
@@ -131,70 +131,70 @@ impl Printer<'_> {
         }
     }
 
-    fn number(&self, value: f64, truth: bool) -> (u8, Vec<Piece>) {
+    fn number(&self, value: f64, truth: bool) -> (u8, Vec<PrintPiece>) {
         if truth {
-            return (bind::PRIMARY, vec![Piece::Text(if value == 0.0 { "false" } else { "true" })]);
+            return (bind::PRIMARY, vec![PrintPiece::Text(if value == 0.0 { "false" } else { "true" })]);
         }
         let binding = if value < 0.0 { bind::SUM } else { bind::PRIMARY };
-        (binding, vec![Piece::Name(number(value, self.digits))])
+        (binding, vec![PrintPiece::Name(number(value, self.digits))])
     }
 }
 
 /// Comma-separated arguments and the closing bracket.
-fn arguments(pieces: &mut Vec<Piece>, args: &[ExprId]) {
+fn arguments(pieces: &mut Vec<PrintPiece>, args: &[ExprId]) {
     for (i, &arg) in args.iter().enumerate() {
         if i > 0 {
-            pieces.push(Piece::Text(", "));
+            pieces.push(PrintPiece::Text(", "));
         }
-        pieces.push(Piece::Expr(arg, bind::WHOLE, false));
+        pieces.push(PrintPiece::Expr(arg, bind::WHOLE, false));
     }
-    pieces.push(Piece::Text(")"));
+    pieces.push(PrintPiece::Text(")"));
 }
 
-fn call(name: &'static str, args: &[ExprId]) -> (u8, Vec<Piece>) {
-    let mut pieces = vec![Piece::Text(name), Piece::Text("(")];
+fn call(name: &'static str, args: &[ExprId]) -> (u8, Vec<PrintPiece>) {
+    let mut pieces = vec![PrintPiece::Text(name), PrintPiece::Text("(")];
     arguments(&mut pieces, args);
     (bind::PRIMARY, pieces)
 }
 
-fn binary(op: Binary, a: ExprId, b: ExprId) -> (u8, Vec<Piece>) {
+fn binary(op: BinaryFunction, a: ExprId, b: ExprId) -> (u8, Vec<PrintPiece>) {
     let (own, left, sign, right) = match op {
-        Binary::Add => (bind::SUM, bind::SUM, " + ", bind::PRODUCT),
-        Binary::Sub => (bind::SUM, bind::SUM, " - ", bind::PRODUCT),
-        Binary::Mul => (bind::PRODUCT, bind::PRODUCT, "*", bind::POWER),
-        Binary::Div => (bind::PRODUCT, bind::PRODUCT, "/", bind::POWER),
-        Binary::Pow => (bind::POWER, bind::PRIMARY, "^", bind::PRIMARY),
-        Binary::And => (bind::AND, bind::AND, " and ", bind::NOT),
-        Binary::Or => (bind::OR, bind::OR, " or ", bind::AND),
-        Binary::Min => return call("min", &[a, b]),
-        Binary::Max => return call("max", &[a, b]),
-        Binary::Atan2 => return call("atan2", &[a, b]),
+        BinaryFunction::Add => (bind::SUM, bind::SUM, " + ", bind::PRODUCT),
+        BinaryFunction::Sub => (bind::SUM, bind::SUM, " - ", bind::PRODUCT),
+        BinaryFunction::Mul => (bind::PRODUCT, bind::PRODUCT, "*", bind::POWER),
+        BinaryFunction::Div => (bind::PRODUCT, bind::PRODUCT, "/", bind::POWER),
+        BinaryFunction::Pow => (bind::POWER, bind::PRIMARY, "^", bind::PRIMARY),
+        BinaryFunction::And => (bind::AND, bind::AND, " and ", bind::NOT),
+        BinaryFunction::Or => (bind::OR, bind::OR, " or ", bind::AND),
+        BinaryFunction::Min => return call("min", &[a, b]),
+        BinaryFunction::Max => return call("max", &[a, b]),
+        BinaryFunction::Atan2 => return call("atan2", &[a, b]),
     };
-    let truth = matches!(op, Binary::And | Binary::Or);
-    (own, vec![Piece::Expr(a, left, truth), Piece::Text(sign), Piece::Expr(b, right, truth)])
+    let truth = matches!(op, BinaryFunction::And | BinaryFunction::Or);
+    (own, vec![PrintPiece::Expr(a, left, truth), PrintPiece::Text(sign), PrintPiece::Expr(b, right, truth)])
 }
 
 /// The Modelica name of a function of one argument.
-fn unary_name(op: Unary) -> &'static str {
+fn unary_name(op: UnaryFunction) -> &'static str {
     match op {
-        Unary::Neg => "-",
-        Unary::Not => "not",
-        Unary::Abs => "abs",
-        Unary::Sign => "sign",
-        Unary::Sqrt => "sqrt",
-        Unary::Exp => "exp",
-        Unary::Log => "log",
-        Unary::Log10 => "log10",
-        Unary::Sin => "sin",
-        Unary::Cos => "cos",
-        Unary::Tan => "tan",
-        Unary::Asin => "asin",
-        Unary::Acos => "acos",
-        Unary::Atan => "atan",
-        Unary::Sinh => "sinh",
-        Unary::Cosh => "cosh",
-        Unary::Tanh => "tanh",
-        Unary::Floor => "floor",
+        UnaryFunction::Neg => "-",
+        UnaryFunction::Not => "not",
+        UnaryFunction::Abs => "abs",
+        UnaryFunction::Sign => "sign",
+        UnaryFunction::Sqrt => "sqrt",
+        UnaryFunction::Exp => "exp",
+        UnaryFunction::Log => "log",
+        UnaryFunction::Log10 => "log10",
+        UnaryFunction::Sin => "sin",
+        UnaryFunction::Cos => "cos",
+        UnaryFunction::Tan => "tan",
+        UnaryFunction::Asin => "asin",
+        UnaryFunction::Acos => "acos",
+        UnaryFunction::Atan => "atan",
+        UnaryFunction::Sinh => "sinh",
+        UnaryFunction::Cosh => "cosh",
+        UnaryFunction::Tanh => "tanh",
+        UnaryFunction::Floor => "floor",
     }
 }
 
@@ -252,7 +252,7 @@ mod tests {
         let mut p = Exprs::default();
         let (x, y) = (p.var(VarId(0)), p.pre(VarId(1)));
         let dx = p.der(VarId(0));
-        let less = p.event_rel(Rel::Lt, x, Exprs::ZERO);
+        let less = p.event_rel(RelationalOp::Lt, x, Exprs::ZERO);
         let not = p.not(y);
         let both = p.and(not, less);
         let either = p.or(both, y);

@@ -5,9 +5,9 @@
 //! tangent. Calls become calls of the tangent of the called function, which is reserved before its body is made, so
 //! that recursive functions end. A tangent is a function like any other: its tangent gives second derivatives.
 
-use super::function::{Function, Handle, Stmt, Term};
-use super::rules::{self, Algebra};
-use super::{Binary, Exprs, FunctionId, Rel, Unary, math};
+use super::function::{ExternalFunctionHandle, Function, SlotExpr, SlotStatement};
+use super::rules::{self, ExprAlgebra};
+use super::{BinaryFunction, Exprs, FunctionId, RelationalOp, UnaryFunction, math};
 
 impl Exprs {
     /// The function that takes the inputs of `f` and returns the derivatives of its outputs by one input.
@@ -20,14 +20,14 @@ impl Exprs {
         let inputs = original.inputs;
         let outputs = u32::try_from(original.outputs.len()).expect("fewer than 2^32 outputs");
         let results: Vec<u32> = (inputs..inputs + outputs).collect();
-        let values = (0..inputs).map(Term::Slot);
-        let direction = (0..inputs).map(|i| Term::Num(math::truth(i == input)));
+        let values = (0..inputs).map(SlotExpr::Slot);
+        let direction = (0..inputs).map(|i| SlotExpr::Num(math::truth(i == input)));
         let partial = Function {
             name: original.name.clone(),
             inputs,
             slots: inputs + outputs,
             outputs: results.clone(),
-            body: vec![Stmt::Call {
+            body: vec![SlotStatement::Call {
                 function: tangent,
                 args: values.chain(direction).collect(),
                 outputs: results.into_iter().map(Some).collect(),
@@ -44,7 +44,7 @@ impl Exprs {
             return known;
         }
         let original = self.functions[f.0 as usize].clone();
-        let layout = Layout { inputs: original.inputs, slots: original.slots };
+        let layout = TangentLayout { inputs: original.inputs, slots: original.slots };
         let id = self.add_function(Function {
             name: original.name,
             inputs: 2 * original.inputs,
@@ -53,7 +53,7 @@ impl Exprs {
             body: Vec::new(),
         });
         self.tangents.insert(f, id);
-        let body = Tangent { pool: self, layout }.statements(&original.body);
+        let body = TangentTransform { pool: self, layout }.statements(&original.body);
         self.functions[id.0 as usize].body = body;
         id
     }
@@ -69,12 +69,12 @@ impl Exprs {
 /// Where the slots of a function and their tangents are in its tangent function: input values, input tangents, other
 /// values, other tangents. Arrays stay together.
 #[derive(Clone, Copy)]
-struct Layout {
+struct TangentLayout {
     inputs: u32,
     slots: u32,
 }
 
-impl Layout {
+impl TangentLayout {
     fn value(self, slot: u32) -> u32 {
         if slot < self.inputs { slot } else { self.inputs + slot }
     }
@@ -85,13 +85,13 @@ impl Layout {
 }
 
 /// Transforms the body of one function.
-struct Tangent<'a> {
+struct TangentTransform<'a> {
     pool: &'a mut Exprs,
-    layout: Layout,
+    layout: TangentLayout,
 }
 
-impl Tangent<'_> {
-    fn statements(&mut self, body: &[Stmt]) -> Vec<Stmt> {
+impl TangentTransform<'_> {
+    fn statements(&mut self, body: &[SlotStatement]) -> Vec<SlotStatement> {
         let mut out = Vec::new();
         for stmt in body {
             self.statement(stmt, &mut out);
@@ -99,53 +99,59 @@ impl Tangent<'_> {
         out
     }
 
-    fn statement(&mut self, stmt: &Stmt, out: &mut Vec<Stmt>) {
+    fn statement(&mut self, stmt: &SlotStatement, out: &mut Vec<SlotStatement>) {
         match stmt {
-            Stmt::Assign(slot, value) => {
+            SlotStatement::Assign(slot, value) => {
                 let change = self.tangent_or_zero(value);
-                out.push(Stmt::Assign(self.layout.tangent(*slot), change));
-                out.push(Stmt::Assign(self.layout.value(*slot), self.value(value)));
+                out.push(SlotStatement::Assign(self.layout.tangent(*slot), change));
+                out.push(SlotStatement::Assign(self.layout.value(*slot), self.value(value)));
             }
-            Stmt::AssignAt { base, len, offset, value } => {
+            SlotStatement::AssignAt { base, len, offset, value } => {
                 let change = self.tangent_or_zero(value);
-                let at = |base, value| Stmt::AssignAt { base, len: *len, offset: self.value(offset), value };
+                let at = |base, value| SlotStatement::AssignAt { base, len: *len, offset: self.value(offset), value };
                 out.push(at(self.layout.tangent(*base), change));
                 out.push(at(self.layout.value(*base), self.value(value)));
             }
-            Stmt::Call { function, args, outputs } => self.call(*function, args, outputs, out),
-            Stmt::If(branches, otherwise) => {
+            SlotStatement::Call { function, args, outputs } => self.call(*function, args, outputs, out),
+            SlotStatement::If(branches, otherwise) => {
                 let branches = branches.iter().map(|(c, body)| (self.value(c), self.statements(body))).collect();
                 let otherwise = self.statements(otherwise);
-                out.push(Stmt::If(branches, otherwise));
+                out.push(SlotStatement::If(branches, otherwise));
             }
-            Stmt::For { slot, from, step, to, body } => {
-                let mut inside = vec![Stmt::Assign(self.layout.tangent(*slot), Term::Num(0.0))];
+            SlotStatement::For { slot, from, step, to, body } => {
+                let mut inside = vec![SlotStatement::Assign(self.layout.tangent(*slot), SlotExpr::Num(0.0))];
                 inside.extend(self.statements(body));
                 let (from, step, to) = (self.value(from), self.value(step), self.value(to));
-                out.push(Stmt::For { slot: self.layout.value(*slot), from, step, to, body: inside });
+                out.push(SlotStatement::For { slot: self.layout.value(*slot), from, step, to, body: inside });
             }
-            Stmt::While(condition, body) => {
+            SlotStatement::While(condition, body) => {
                 let body = self.statements(body);
-                out.push(Stmt::While(self.value(condition), body));
+                out.push(SlotStatement::While(self.value(condition), body));
             }
-            Stmt::Break => out.push(Stmt::Break),
-            Stmt::Return => out.push(Stmt::Return),
-            Stmt::Assert(condition, message) => out.push(Stmt::Assert(self.value(condition), message.clone())),
+            SlotStatement::Break => out.push(SlotStatement::Break),
+            SlotStatement::Return => out.push(SlotStatement::Return),
+            SlotStatement::Assert(condition, message) => {
+                out.push(SlotStatement::Assert(self.value(condition), message.clone()))
+            }
         }
     }
 
-    fn call(&mut self, function: FunctionId, args: &[Term], outputs: &[Option<u32>], out: &mut Vec<Stmt>) {
+    fn call(&mut self, function: FunctionId, args: &[SlotExpr], outputs: &[Option<u32>], out: &mut Vec<SlotStatement>) {
         let tangent = self.pool.tangent_function(function);
         let changes = outputs.iter().map(|slot| slot.map(|slot| self.layout.tangent(slot))).collect();
         let values = outputs.iter().map(|slot| slot.map(|slot| self.layout.value(slot))).collect();
         let both = self.with_tangents(args);
         // The arguments may be outputs too: tangents are written first, and values are not read after they are.
-        out.push(Stmt::Call { function: tangent, args: both, outputs: changes });
-        out.push(Stmt::Call { function, args: args.iter().map(|arg| self.value(arg)).collect(), outputs: values });
+        out.push(SlotStatement::Call { function: tangent, args: both, outputs: changes });
+        out.push(SlotStatement::Call {
+            function,
+            args: args.iter().map(|arg| self.value(arg)).collect(),
+            outputs: values,
+        });
     }
 
-    fn with_tangents(&mut self, args: &[Term]) -> Vec<Term> {
-        let mut both: Vec<Term> = args.iter().map(|arg| self.value(arg)).collect();
+    fn with_tangents(&mut self, args: &[SlotExpr]) -> Vec<SlotExpr> {
+        let mut both: Vec<SlotExpr> = args.iter().map(|arg| self.value(arg)).collect();
         for arg in args {
             both.push(self.tangent_or_zero(arg));
         }
@@ -153,62 +159,66 @@ impl Tangent<'_> {
     }
 
     /// The term itself, over the new slots.
-    fn value(&self, term: &Term) -> Term {
+    fn value(&self, term: &SlotExpr) -> SlotExpr {
         let layout = self.layout;
         match term {
-            Term::Num(value) => Term::Num(*value),
-            Term::Slot(slot) => Term::Slot(layout.value(*slot)),
-            Term::At { base, len, offset } => self.element(layout.value(*base), *len, offset),
-            Term::Unary(op, a) => Term::Unary(*op, Box::new(self.value(a))),
-            Term::Binary(op, a, b) => Term::Binary(*op, Box::new(self.value(a)), Box::new(self.value(b))),
-            Term::Rel(rel, a, b) => Term::Rel(*rel, Box::new(self.value(a)), Box::new(self.value(b))),
-            Term::If(c, a, b) => Term::If(Box::new(self.value(c)), Box::new(self.value(a)), Box::new(self.value(b))),
-            Term::Call(f, output, args) => Term::Call(*f, *output, args.iter().map(|arg| self.value(arg)).collect()),
-            Term::External(f, output, args) => {
-                Term::External(f.clone(), *output, args.iter().map(|arg| self.value(arg)).collect())
+            SlotExpr::Num(value) => SlotExpr::Num(*value),
+            SlotExpr::Slot(slot) => SlotExpr::Slot(layout.value(*slot)),
+            SlotExpr::At { base, len, offset } => self.element(layout.value(*base), *len, offset),
+            SlotExpr::Unary(op, a) => SlotExpr::Unary(*op, Box::new(self.value(a))),
+            SlotExpr::Binary(op, a, b) => SlotExpr::Binary(*op, Box::new(self.value(a)), Box::new(self.value(b))),
+            SlotExpr::Rel(rel, a, b) => SlotExpr::Rel(*rel, Box::new(self.value(a)), Box::new(self.value(b))),
+            SlotExpr::If(c, a, b) => {
+                SlotExpr::If(Box::new(self.value(c)), Box::new(self.value(a)), Box::new(self.value(b)))
+            }
+            SlotExpr::Call(f, output, args) => {
+                SlotExpr::Call(*f, *output, args.iter().map(|arg| self.value(arg)).collect())
+            }
+            SlotExpr::External(f, output, args) => {
+                SlotExpr::External(f.clone(), *output, args.iter().map(|arg| self.value(arg)).collect())
             }
         }
     }
 
-    fn element(&self, base: u32, len: u32, offset: &Term) -> Term {
-        Term::At { base, len, offset: Box::new(self.value(offset)) }
+    fn element(&self, base: u32, len: u32, offset: &SlotExpr) -> SlotExpr {
+        SlotExpr::At { base, len, offset: Box::new(self.value(offset)) }
     }
 
-    fn tangent_or_zero(&mut self, term: &Term) -> Term {
-        self.tangent(term).unwrap_or(Term::Num(0.0))
+    fn tangent_or_zero(&mut self, term: &SlotExpr) -> SlotExpr {
+        self.tangent(term).unwrap_or(SlotExpr::Num(0.0))
     }
 
     /// The tangent of a term; `None` when it is always 0.
-    fn tangent(&mut self, term: &Term) -> Option<Term> {
+    fn tangent(&mut self, term: &SlotExpr) -> Option<SlotExpr> {
         match term {
-            Term::Num(_) | Term::Rel(..) => None,
-            Term::Slot(slot) => Some(Term::Slot(self.layout.tangent(*slot))),
-            Term::At { base, len, offset } => Some(self.element(self.layout.tangent(*base), *len, offset)),
-            Term::Unary(op, a) => {
+            SlotExpr::Num(_) | SlotExpr::Rel(..) => None,
+            SlotExpr::Slot(slot) => Some(SlotExpr::Slot(self.layout.tangent(*slot))),
+            SlotExpr::At { base, len, offset } => Some(self.element(self.layout.tangent(*base), *len, offset)),
+            SlotExpr::Unary(op, a) => {
                 let da = self.tangent(a)?;
-                rules::unary(&mut Terms, *op, &self.value(a), &self.value(term), da)
+                rules::unary(&mut SlotExprBuilder, *op, &self.value(a), &self.value(term), da)
             }
-            Term::Binary(op, a, b) => {
+            SlotExpr::Binary(op, a, b) => {
                 let (da, db) = (self.tangent(a), self.tangent(b));
-                rules::binary(&mut Terms, *op, (&self.value(a), &self.value(b), &self.value(term)), da, db)
+                rules::binary(&mut SlotExprBuilder, *op, (&self.value(a), &self.value(b), &self.value(term)), da, db)
             }
-            Term::If(c, a, b) => {
+            SlotExpr::If(c, a, b) => {
                 let (da, db) = (self.tangent(a), self.tangent(b));
-                rules::branch(&mut Terms, self.value(c), da, db)
+                rules::branch(&mut SlotExprBuilder, self.value(c), da, db)
             }
-            Term::Call(function, output, args) => {
+            SlotExpr::Call(function, output, args) => {
                 let tangent = self.pool.tangent_function(*function);
-                Some(Term::Call(tangent, *output, self.with_tangents(args)))
+                Some(SlotExpr::Call(tangent, *output, self.with_tangents(args)))
             }
-            Term::External(function, output, args) => {
-                let values: Vec<Term> = args.iter().map(|arg| self.value(arg)).collect();
+            SlotExpr::External(function, output, args) => {
+                let values: Vec<SlotExpr> = args.iter().map(|arg| self.value(arg)).collect();
                 let mut sum = None;
                 for (i, arg) in args.iter().enumerate() {
                     let (Some(partial), Some(change)) = (function.0.partial(i), self.tangent(arg)) else { continue };
-                    let slope = Term::External(Handle(partial), *output, values.clone());
-                    let part = Terms.binary(Binary::Mul, slope, change);
+                    let slope = SlotExpr::External(ExternalFunctionHandle(partial), *output, values.clone());
+                    let part = SlotExprBuilder.binary(BinaryFunction::Mul, slope, change);
                     sum = Some(match sum {
-                        Some(before) => Terms.binary(Binary::Add, before, part),
+                        Some(before) => SlotExprBuilder.binary(BinaryFunction::Add, before, part),
                         None => part,
                     });
                 }
@@ -219,43 +229,45 @@ impl Tangent<'_> {
 }
 
 /// Builds terms, dropping neutral elements as the pool of expressions does.
-struct Terms;
+struct SlotExprBuilder;
 
-impl Algebra for Terms {
-    type E = Term;
+impl ExprAlgebra for SlotExprBuilder {
+    type E = SlotExpr;
 
-    fn num(&mut self, value: f64) -> Term {
-        Term::Num(value)
+    fn num(&mut self, value: f64) -> SlotExpr {
+        SlotExpr::Num(value)
     }
 
-    fn unary(&mut self, op: Unary, a: Term) -> Term {
+    fn unary(&mut self, op: UnaryFunction, a: SlotExpr) -> SlotExpr {
         match (op, a) {
-            (Unary::Neg, Term::Num(x)) => Term::Num(-x),
-            (Unary::Neg, Term::Unary(Unary::Neg, inner)) => *inner,
-            (op, a) => Term::Unary(op, Box::new(a)),
+            (UnaryFunction::Neg, SlotExpr::Num(x)) => SlotExpr::Num(-x),
+            (UnaryFunction::Neg, SlotExpr::Unary(UnaryFunction::Neg, inner)) => *inner,
+            (op, a) => SlotExpr::Unary(op, Box::new(a)),
         }
     }
 
-    fn binary(&mut self, op: Binary, a: Term, b: Term) -> Term {
+    fn binary(&mut self, op: BinaryFunction, a: SlotExpr, b: SlotExpr) -> SlotExpr {
         match (op, &a, &b) {
-            (Binary::Mul, Term::Num(0.0), _) | (Binary::Mul, _, Term::Num(0.0)) => Term::Num(0.0),
-            (Binary::Mul | Binary::Div | Binary::Pow, _, Term::Num(1.0)) => a,
-            (Binary::Mul, Term::Num(1.0), _) => b,
-            (Binary::Add | Binary::Sub, _, Term::Num(0.0)) => a,
-            (Binary::Add, Term::Num(0.0), _) => b,
-            (Binary::Pow, _, Term::Num(0.0)) => Term::Num(1.0),
-            (_, Term::Num(x), Term::Num(y)) if math::binary(op, *x, *y).is_finite() => {
-                Term::Num(math::binary(op, *x, *y))
+            (BinaryFunction::Mul, SlotExpr::Num(0.0), _) | (BinaryFunction::Mul, _, SlotExpr::Num(0.0)) => {
+                SlotExpr::Num(0.0)
             }
-            _ => Term::Binary(op, Box::new(a), Box::new(b)),
+            (BinaryFunction::Mul | BinaryFunction::Div | BinaryFunction::Pow, _, SlotExpr::Num(1.0)) => a,
+            (BinaryFunction::Mul, SlotExpr::Num(1.0), _) => b,
+            (BinaryFunction::Add | BinaryFunction::Sub, _, SlotExpr::Num(0.0)) => a,
+            (BinaryFunction::Add, SlotExpr::Num(0.0), _) => b,
+            (BinaryFunction::Pow, _, SlotExpr::Num(0.0)) => SlotExpr::Num(1.0),
+            (_, SlotExpr::Num(x), SlotExpr::Num(y)) if math::binary(op, *x, *y).is_finite() => {
+                SlotExpr::Num(math::binary(op, *x, *y))
+            }
+            _ => SlotExpr::Binary(op, Box::new(a), Box::new(b)),
         }
     }
 
-    fn rel(&mut self, rel: Rel, a: Term, b: Term) -> Term {
-        Term::Rel(rel, Box::new(a), Box::new(b))
+    fn rel(&mut self, rel: RelationalOp, a: SlotExpr, b: SlotExpr) -> SlotExpr {
+        SlotExpr::Rel(rel, Box::new(a), Box::new(b))
     }
 
-    fn if_(&mut self, c: Term, a: Term, b: Term) -> Term {
-        Term::If(Box::new(c), Box::new(a), Box::new(b))
+    fn if_(&mut self, c: SlotExpr, a: SlotExpr, b: SlotExpr) -> SlotExpr {
+        SlotExpr::If(Box::new(c), Box::new(a), Box::new(b))
     }
 }

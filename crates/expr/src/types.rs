@@ -5,7 +5,7 @@ use crate::ExprId;
 
 /// The type of a scalar variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Type {
+pub enum ScalarType {
     /// Real
     Real,
     /// Integer
@@ -47,5 +47,5 @@ pub enum MessagePart {
     /// Words.
     Text(String),
     /// A value and how it is printed.
-    Value(ExprId, Type),
+    Value(ExprId, ScalarType),
 }

@@ -3,18 +3,18 @@
 //! Nothing here recurses, so a sum of a million terms is no danger; arguments have smaller ids than their node, so the
 //! reachable nodes in the order of their ids are in an order of evaluation.
 
-use super::{ExprId, Exprs, Node, VarId};
+use super::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 /// The arguments of one node.
 #[derive(Clone, Copy, Debug)]
-pub struct Operands<'a> {
+pub struct NodeOperands<'a> {
     few: [ExprId; 3],
     len: usize,
     many: &'a [ExprId],
 }
 
-impl Operands<'_> {
+impl NodeOperands<'_> {
     /// The arguments in order.
     pub fn as_slice(&self) -> &[ExprId] {
         if self.many.is_empty() { &self.few[..self.len] } else { self.many }
@@ -23,7 +23,7 @@ impl Operands<'_> {
 
 /// The leaves of some expressions, each list sorted and without repetition.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Dependencies {
+pub struct LeafDependencies {
     /// Variables whose value occurs.
     pub vars: Vec<VarId>,
     /// Variables whose time derivative occurs.
@@ -36,16 +36,16 @@ pub struct Dependencies {
 
 /// A reusable record of visited nodes, for many walks over one pool.
 #[derive(Clone, Debug, Default)]
-pub struct Walk {
+pub struct NodeTraversal {
     marks: Vec<u32>,
     stamp: u32,
     stack: Vec<ExprId>,
 }
 
-impl Walk {
+impl NodeTraversal {
     /// Calls `visit` once for every node reachable from `roots`, parents before children. When `visit` says false, the
     /// arguments of that node are not followed.
-    pub fn each(&mut self, pool: &Exprs, roots: &[ExprId], mut visit: impl FnMut(ExprId, Node) -> bool) {
+    pub fn each(&mut self, pool: &Exprs, roots: &[ExprId], mut visit: impl FnMut(ExprId, ExprNode) -> bool) {
         if self.stamp == u32::MAX {
             self.marks.clear();
             self.stamp = 0;
@@ -67,38 +67,42 @@ impl Walk {
 
 impl Exprs {
     /// The arguments of a node; none for leaves.
-    pub fn operands(&self, e: ExprId) -> Operands<'_> {
+    pub fn operands(&self, e: ExprId) -> NodeOperands<'_> {
         let none = Self::ZERO;
         let (few, len) = match self.node(e) {
-            Node::Num(_) | Node::Time | Node::Var(_) | Node::Der(_) | Node::Pre(_) | Node::Initial | Node::Terminal => {
-                ([none; 3], 0)
-            }
-            Node::Unary(_, a) | Node::EventFloor(a) => ([a, none, none], 1),
-            Node::Binary(_, a, b)
-            | Node::Rel(_, a, b)
-            | Node::EventRel(_, a, b)
-            | Node::Sample(a, b)
-            | Node::Delay(a, b)
-            | Node::Homotopy(a, b) => ([a, b, none], 2),
-            Node::If(c, a, b) => ([c, a, b], 3),
-            Node::Call(_, _, args) => return Operands { few: [none; 3], len: 0, many: self.args(args) },
+            ExprNode::Num(_)
+            | ExprNode::Time
+            | ExprNode::Var(_)
+            | ExprNode::Der(_)
+            | ExprNode::Pre(_)
+            | ExprNode::Initial
+            | ExprNode::Terminal => ([none; 3], 0),
+            ExprNode::Unary(_, a) | ExprNode::EventFloor(a) => ([a, none, none], 1),
+            ExprNode::Binary(_, a, b)
+            | ExprNode::Rel(_, a, b)
+            | ExprNode::EventRel(_, a, b)
+            | ExprNode::Sample(a, b)
+            | ExprNode::Delay(a, b)
+            | ExprNode::Homotopy(a, b) => ([a, b, none], 2),
+            ExprNode::If(c, a, b) => ([c, a, b], 3),
+            ExprNode::Call(_, _, args) => return NodeOperands { few: [none; 3], len: 0, many: self.args(args) },
         };
-        Operands { few, len, many: &[] }
+        NodeOperands { few, len, many: &[] }
     }
 
     /// The same node with other arguments, simplified.
     pub fn with_operands(&mut self, e: ExprId, mut change: impl FnMut(ExprId) -> ExprId) -> ExprId {
         match self.node(e) {
-            Node::Unary(op, a) => self.unary(op, change(a)),
-            Node::EventFloor(a) => self.event_floor(change(a)),
-            Node::Binary(op, a, b) => self.binary(op, change(a), change(b)),
-            Node::Rel(rel, a, b) => self.rel(rel, change(a), change(b)),
-            Node::EventRel(rel, a, b) => self.event_rel(rel, change(a), change(b)),
-            Node::Sample(a, b) => self.sample(change(a), change(b)),
-            Node::Delay(a, b) => self.delay(change(a), change(b)),
-            Node::Homotopy(a, b) => self.homotopy(change(a), change(b)),
-            Node::If(c, a, b) => self.if_(change(c), change(a), change(b)),
-            Node::Call(function, output, args) => {
+            ExprNode::Unary(op, a) => self.unary(op, change(a)),
+            ExprNode::EventFloor(a) => self.event_floor(change(a)),
+            ExprNode::Binary(op, a, b) => self.binary(op, change(a), change(b)),
+            ExprNode::Rel(rel, a, b) => self.rel(rel, change(a), change(b)),
+            ExprNode::EventRel(rel, a, b) => self.event_rel(rel, change(a), change(b)),
+            ExprNode::Sample(a, b) => self.sample(change(a), change(b)),
+            ExprNode::Delay(a, b) => self.delay(change(a), change(b)),
+            ExprNode::Homotopy(a, b) => self.homotopy(change(a), change(b)),
+            ExprNode::If(c, a, b) => self.if_(change(c), change(a), change(b)),
+            ExprNode::Call(function, output, args) => {
                 let args: Vec<ExprId> = self.args(args).to_vec().into_iter().map(change).collect();
                 self.call(function, output, &args)
             }
@@ -130,14 +134,14 @@ impl Exprs {
     }
 
     /// Everything that the expressions depend on.
-    pub fn dependencies(&self, roots: &[ExprId]) -> Dependencies {
-        let mut found = Dependencies::default();
+    pub fn dependencies(&self, roots: &[ExprId]) -> LeafDependencies {
+        let mut found = LeafDependencies::default();
         for e in self.reachable(roots, |_| true) {
             match self.node(e) {
-                Node::Var(v) => found.vars.push(v),
-                Node::Der(v) => found.ders.push(v),
-                Node::Pre(v) => found.pres.push(v),
-                Node::Time => found.time = true,
+                ExprNode::Var(v) => found.vars.push(v),
+                ExprNode::Der(v) => found.ders.push(v),
+                ExprNode::Pre(v) => found.pres.push(v),
+                ExprNode::Time => found.time = true,
                 _ => {}
             }
         }
@@ -234,7 +238,7 @@ mod tests {
         let (x, y) = (p.var(VarId(0)), p.der(VarId(1)));
         let product = p.mul(x, y);
         let root = p.add(product, x);
-        let mut walk = Walk::default();
+        let mut walk = NodeTraversal::default();
         for _ in 0..2 {
             let mut seen = Vec::new();
             walk.each(&p, &[root], |e, _| {

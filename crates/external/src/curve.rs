@@ -5,7 +5,7 @@ use super::options::{Extrapolation, Smoothness};
 
 /// One curve: pieces between abscissae, and what lies outside.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Curve {
+pub struct TableCurve {
     /// Where each piece begins, growing.
     starts: Vec<f64>,
     /// Coefficients of each over the distance from its start, from the constant up.
@@ -18,7 +18,7 @@ pub struct Curve {
     extrapolation: Extrapolation,
 }
 
-impl Curve {
+impl TableCurve {
     /// Through points whose abscissae do not decrease; two equal ones make a jump. At least one point.
     pub fn new(x: &[f64], y: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Self {
         let (mut starts, mut pieces) = (Vec::new(), Vec::new());
@@ -33,7 +33,7 @@ impl Curve {
             starts.push(x[0]);
             pieces.push([y[y.len() - 1], 0.0, 0.0, 0.0]);
         }
-        Curve { starts, pieces, end: x[x.len() - 1], last: y[y.len() - 1], first: y[0], smoothness, extrapolation }
+        TableCurve { starts, pieces, end: x[x.len() - 1], last: y[y.len() - 1], first: y[0], smoothness, extrapolation }
     }
 
     /// The least abscissa.
@@ -211,9 +211,9 @@ fn monotone(x: &[f64], secants: &[f64], steffen: bool) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn through(y: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Curve {
+    fn through(y: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> TableCurve {
         let x: Vec<f64> = (0..y.len()).map(|k| k as f64).collect();
-        Curve::new(&x, y, smoothness, extrapolation)
+        TableCurve::new(&x, y, smoothness, extrapolation)
     }
 
     #[test]
@@ -265,9 +265,10 @@ mod tests {
 
     #[test]
     fn a_jump_has_two_sides() {
-        let curve = Curve::new(&[0.0, 1.0, 1.0, 2.0], &[0.0, 1.0, 5.0, 6.0], Smoothness::Linear, Extrapolation::Hold);
+        let curve =
+            TableCurve::new(&[0.0, 1.0, 1.0, 2.0], &[0.0, 1.0, 5.0, 6.0], Smoothness::Linear, Extrapolation::Hold);
         assert_eq!((curve.value(1.0, 0, true), curve.value(1.0, 0, false)), (1.0, 5.0));
-        let on = Curve::new(&[2.0, 2.0, 4.0], &[0.0, 1.0, 0.0], Smoothness::Constant, Extrapolation::Hold);
+        let on = TableCurve::new(&[2.0, 2.0, 4.0], &[0.0, 1.0, 0.0], Smoothness::Constant, Extrapolation::Hold);
         assert_eq!([1.0, 2.0, 3.0, 5.0].map(|u| on.value(u, 0, false)), [0.0, 1.0, 1.0, 0.0]);
         let steps = through(&[1.0, 2.0, 3.0], Smoothness::Constant, Extrapolation::Hold);
         assert_eq!(

@@ -1,6 +1,6 @@
 //! The Fourier transform of a sampled signal, as `ModelicaFFT_kiss_fftr` gives it.
 
-use bramah_expr::function::External;
+use bramah_expr::function::ExternalFunction;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -20,7 +20,7 @@ impl Spectrum {
     }
 }
 
-impl External for Spectrum {
+impl ExternalFunction for Spectrum {
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         let n = args.len();
         let frequencies = n / 2 + 1;
@@ -49,9 +49,9 @@ impl External for Spectrum {
         }
     }
 
-    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+    fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
         // nothing that is solved needs curvatures of a spectrum
-        self.by.is_none().then(|| Arc::new(Spectrum { by: Some(input) }) as Arc<dyn External>)
+        self.by.is_none().then(|| Arc::new(Spectrum { by: Some(input) }) as Arc<dyn ExternalFunction>)
     }
 }
 

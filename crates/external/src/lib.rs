@@ -15,17 +15,17 @@ mod strings;
 mod surface;
 mod time_table;
 
-use bramah_expr::function::External;
-use curve::Curve;
+use bramah_expr::function::ExternalFunction;
+use curve::TableCurve;
 use options::{Extrapolation, Smoothness, TimeEvents};
-use random::{Draw, Generator};
+use random::{RandomDraw, RandomGenerator};
 use std::sync::Arc;
-use surface::Surface;
+use surface::TableSurface;
 use time_table::TimeTable;
 
 /// A value given to such a function, or by it.
 #[derive(Clone, Debug)]
-pub enum Given {
+pub enum ExternalValue {
     /// A text.
     Text(String),
     /// A number, truth value or literal, or an array of these, row by row; `None` for what is not known before the run.
@@ -36,46 +36,46 @@ pub enum Given {
         values: Vec<Option<f64>>,
     },
     /// An external object.
-    Object(Object),
+    Object(ExternalObject),
 }
 
 /// What an external object holds.
 #[derive(Clone, Debug)]
-pub enum Object {
+pub enum ExternalObject {
     /// Columns over one argument.
-    Curves(Arc<Vec<Curve>>),
+    Curves(Arc<Vec<TableCurve>>),
     /// Columns over time.
     Times(Arc<TimeTable>),
     /// A map.
-    Surface(Arc<Surface>),
+    Surface(Arc<TableSurface>),
     /// A unit of another tool.
     #[cfg(feature = "fmi")]
-    MockUp(Arc<mockup::Pool>),
+    MockUp(Arc<mockup::InstancePool>),
 }
 
-impl Object {
+impl ExternalObject {
     /// Where it lies: the same for the same object.
     pub fn address(&self) -> usize {
         match self {
-            Object::Curves(table) => Arc::as_ptr(table).addr(),
-            Object::Times(table) => Arc::as_ptr(table).addr(),
-            Object::Surface(table) => Arc::as_ptr(table).addr(),
+            ExternalObject::Curves(table) => Arc::as_ptr(table).addr(),
+            ExternalObject::Times(table) => Arc::as_ptr(table).addr(),
+            ExternalObject::Surface(table) => Arc::as_ptr(table).addr(),
             #[cfg(feature = "fmi")]
-            Object::MockUp(pool) => Arc::as_ptr(pool).addr(),
+            ExternalObject::MockUp(pool) => Arc::as_ptr(pool).addr(),
         }
     }
 }
 
 /// How a C function is carried out.
 #[derive(Clone, Copy)]
-pub enum Builtin {
+pub enum BuiltinImplementation {
     /// It makes an object of what is known before the run. The first arguments are the names of a file and of a table in
     /// it, and the table where there is no file.
-    Object(fn(&[Given]) -> Result<Object, String>),
+    Object(fn(&[ExternalValue]) -> Result<ExternalObject, String>),
     /// A function of all numbers that are not part of an object, in order; results and output arguments are its outputs.
-    Function(fn(&[Given]) -> Option<Arc<dyn External>>),
+    Function(fn(&[ExternalValue]) -> Option<Arc<dyn ExternalFunction>>),
     /// It makes values of known values: the result, then the output arguments.
-    Values(fn(&[Given]) -> Option<Vec<Given>>),
+    Values(fn(&[ExternalValue]) -> Option<Vec<ExternalValue>>),
     /// It makes an object of a unit of another tool: its file, kind and texts.
     MockUp,
     /// It does something that no model can see.
@@ -86,52 +86,52 @@ pub enum Builtin {
 pub const NO_NAME: &str = "NoName";
 
 /// A C function by its name.
-pub fn builtin(name: &str) -> Option<Builtin> {
-    use Builtin::{Function, MockUp, Nothing, Object, Values};
+pub fn builtin(name: &str) -> Option<BuiltinImplementation> {
+    use BuiltinImplementation::{Function, MockUp, Nothing, Object, Values};
     Some(match name {
         "bramah_mockup" => MockUp,
         "bramah_mockup_free" => Nothing,
         #[cfg(feature = "fmi")]
-        "bramah_mockup_begin" => Function(|g| of_mockup(g, mockup::Task::Begin)),
+        "bramah_mockup_begin" => Function(|g| of_mockup(g, mockup::FmuOperation::Begin)),
         #[cfg(feature = "fmi")]
-        "bramah_mockup_start" => Function(|g| of_mockup(g, mockup::Task::Start)),
+        "bramah_mockup_start" => Function(|g| of_mockup(g, mockup::FmuOperation::Start)),
         #[cfg(feature = "fmi")]
-        "bramah_mockup_advance" => Function(|g| of_mockup(g, mockup::Task::Advance)),
+        "bramah_mockup_advance" => Function(|g| of_mockup(g, mockup::FmuOperation::Advance)),
         #[cfg(feature = "fmi")]
-        "bramah_mockup_evaluate" => Function(|g| of_mockup(g, mockup::Task::Evaluate)),
+        "bramah_mockup_evaluate" => Function(|g| of_mockup(g, mockup::FmuOperation::Evaluate)),
         #[cfg(feature = "fmi")]
-        "bramah_mockup_event" => Function(|g| of_mockup(g, mockup::Task::Event)),
+        "bramah_mockup_event" => Function(|g| of_mockup(g, mockup::FmuOperation::Event)),
         "ModelicaStandardTables_CombiTable1D_init2" | "ModelicaStandardTables_CombiTable1D_init3" => Object(curves),
         "ModelicaStandardTables_CombiTimeTable_init2" | "ModelicaStandardTables_CombiTimeTable_init3" => Object(times),
         "ModelicaStandardTables_CombiTable2D_init2" | "ModelicaStandardTables_CombiTable2D_init3" => Object(map),
-        "ModelicaStandardTables_CombiTable1D_getValue" => {
-            Function(|g| curves_of(g).map(|table| Arc::new(OfCurves { table, order: 0 }) as Arc<dyn External>))
-        }
-        "ModelicaStandardTables_CombiTimeTable_getValue" => {
-            Function(|g| times_of(g).map(|table| Arc::new(OfTime { table, order: 0 }) as Arc<dyn External>))
-        }
+        "ModelicaStandardTables_CombiTable1D_getValue" => Function(|g| {
+            curves_of(g).map(|table| Arc::new(CurveLookup { table, order: 0 }) as Arc<dyn ExternalFunction>)
+        }),
+        "ModelicaStandardTables_CombiTimeTable_getValue" => Function(|g| {
+            times_of(g).map(|table| Arc::new(TimeTableLookup { table, order: 0 }) as Arc<dyn ExternalFunction>)
+        }),
         "ModelicaStandardTables_CombiTimeTable_nextTimeEvent" => {
-            Function(|g| times_of(g).map(|table| Arc::new(NextEvent(table)) as Arc<dyn External>))
+            Function(|g| times_of(g).map(|table| Arc::new(NextTableEvent(table)) as Arc<dyn ExternalFunction>))
         }
-        "ModelicaStandardTables_CombiTable2D_getValue" => {
-            Function(|g| map_of(g).map(|table| Arc::new(OfMap { table, orders: [0, 0] }) as Arc<dyn External>))
-        }
+        "ModelicaStandardTables_CombiTable2D_getValue" => Function(|g| {
+            map_of(g).map(|table| Arc::new(SurfaceLookup { table, orders: [0, 0] }) as Arc<dyn ExternalFunction>)
+        }),
         "ModelicaStandardTables_CombiTable1D_minimumAbscissa" => Values(|g| one(curves_of(g)?[0].from())),
         "ModelicaStandardTables_CombiTable1D_maximumAbscissa" => Values(|g| one(curves_of(g)?[0].to())),
         "ModelicaStandardTables_CombiTimeTable_minimumTime" => Values(|g| one(times_of(g)?.curves[0].from())),
         "ModelicaStandardTables_CombiTimeTable_maximumTime" => Values(|g| one(times_of(g)?.curves[0].to())),
         "ModelicaStandardTables_CombiTable2D_minimumAbscissa" => Values(|g| row(&map_of(g)?.range()[0])),
         "ModelicaStandardTables_CombiTable2D_maximumAbscissa" => Values(|g| row(&map_of(g)?.range()[1])),
-        "ModelicaRandom_xorshift64star" => Function(|_| Some(Arc::new(Draw(Generator::Star64)))),
-        "ModelicaRandom_xorshift128plus" => Function(|_| Some(Arc::new(Draw(Generator::Plus128)))),
-        "ModelicaRandom_xorshift1024star" => Function(|_| Some(Arc::new(Draw(Generator::Star1024)))),
+        "ModelicaRandom_xorshift64star" => Function(|_| Some(Arc::new(RandomDraw(RandomGenerator::Star64)))),
+        "ModelicaRandom_xorshift128plus" => Function(|_| Some(Arc::new(RandomDraw(RandomGenerator::Plus128)))),
+        "ModelicaRandom_xorshift1024star" => Function(|_| Some(Arc::new(RandomDraw(RandomGenerator::Star1024)))),
         "ModelicaRandom_setInternalState_xorshift1024star" | "ModelicaInternal_print" => Nothing,
         "ModelicaFFT_kiss_fftr" => Function(|_| Some(Arc::new(fourier::Spectrum::default()))),
-        "dgesv" => Function(|_| Some(Arc::new(linear::Solve::default()))),
+        "dgesv" => Function(|_| Some(Arc::new(linear::LinearSolve::default()))),
         "dgelsy" => Values(linear::least_squares),
         "ModelicaStrings_length" => Values(|g| one(text(g, 0)?.len() as f64)),
         "ModelicaStrings_substring" => {
-            Values(|g| Some(vec![Given::Text(strings::substring(text(g, 0)?, number(g, 1)?, number(g, 2)?))]))
+            Values(|g| Some(vec![ExternalValue::Text(strings::substring(text(g, 0)?, number(g, 1)?, number(g, 2)?))]))
         }
         "ModelicaStrings_compare" => Values(|g| one(strings::compare(text(g, 0)?, text(g, 1)?, number(g, 2)? != 0.0))),
         "ModelicaStrings_skipWhiteSpace" => Values(|g| one(strings::skip_white_space(text(g, 0)?, number(g, 1)?))),
@@ -151,74 +151,76 @@ pub fn builtin(name: &str) -> Option<Builtin> {
 }
 
 /// A single known number.
-fn one(x: f64) -> Option<Vec<Given>> {
-    Some(vec![Given::Numbers { dims: Vec::new(), values: vec![Some(x)] }])
+fn one(x: f64) -> Option<Vec<ExternalValue>> {
+    Some(vec![ExternalValue::Numbers { dims: Vec::new(), values: vec![Some(x)] }])
 }
 
 /// A row of known numbers.
-fn row(x: &[f64]) -> Option<Vec<Given>> {
-    Some(vec![Given::Numbers { dims: vec![x.len()], values: x.iter().copied().map(Some).collect() }])
+fn row(x: &[f64]) -> Option<Vec<ExternalValue>> {
+    Some(vec![ExternalValue::Numbers { dims: vec![x.len()], values: x.iter().copied().map(Some).collect() }])
 }
 
-fn text(given: &[Given], k: usize) -> Option<&str> {
+fn text(given: &[ExternalValue], k: usize) -> Option<&str> {
     match given.get(k)? {
-        Given::Text(text) => Some(text),
+        ExternalValue::Text(text) => Some(text),
         _ => None,
     }
 }
 
-fn number(given: &[Given], k: usize) -> Option<f64> {
+fn number(given: &[ExternalValue], k: usize) -> Option<f64> {
     match given.get(k)? {
-        Given::Numbers { values, .. } => *values.first()?,
+        ExternalValue::Numbers { values, .. } => *values.first()?,
         _ => None,
     }
 }
 
-fn scanned(given: &[Given], token: impl Fn(&str) -> Option<(usize, String)>) -> Option<Vec<Given>> {
+fn scanned(given: &[ExternalValue], token: impl Fn(&str) -> Option<(usize, String)>) -> Option<Vec<ExternalValue>> {
     let (next, found) = strings::scan(text(given, 0)?, number(given, 1)?, token);
-    Some(vec![one(next)?.remove(0), Given::Text(found.unwrap_or_default())])
+    Some(vec![one(next)?.remove(0), ExternalValue::Text(found.unwrap_or_default())])
 }
 
-fn scanned_number(given: &[Given], token: impl Fn(&str) -> Option<(usize, f64)>) -> Option<Vec<Given>> {
+fn scanned_number(given: &[ExternalValue], token: impl Fn(&str) -> Option<(usize, f64)>) -> Option<Vec<ExternalValue>> {
     let (next, found) = strings::scan(text(given, 0)?, number(given, 1)?, token);
     Some(vec![one(next)?.remove(0), one(found.unwrap_or(0.0))?.remove(0)])
 }
 
-fn curves_of(given: &[Given]) -> Option<Arc<Vec<Curve>>> {
+fn curves_of(given: &[ExternalValue]) -> Option<Arc<Vec<TableCurve>>> {
     match given.first()? {
-        Given::Object(Object::Curves(table)) => Some(table.clone()),
+        ExternalValue::Object(ExternalObject::Curves(table)) => Some(table.clone()),
         _ => None,
     }
 }
 
-fn times_of(given: &[Given]) -> Option<Arc<TimeTable>> {
+fn times_of(given: &[ExternalValue]) -> Option<Arc<TimeTable>> {
     match given.first()? {
-        Given::Object(Object::Times(table)) => Some(table.clone()),
+        ExternalValue::Object(ExternalObject::Times(table)) => Some(table.clone()),
         _ => None,
     }
 }
 
-fn map_of(given: &[Given]) -> Option<Arc<Surface>> {
+fn map_of(given: &[ExternalValue]) -> Option<Arc<TableSurface>> {
     match given.first()? {
-        Given::Object(Object::Surface(table)) => Some(table.clone()),
+        ExternalValue::Object(ExternalObject::Surface(table)) => Some(table.clone()),
         _ => None,
     }
 }
 
 #[cfg(feature = "fmi")]
-fn of_mockup(given: &[Given], task: mockup::Task) -> Option<Arc<dyn External>> {
+fn of_mockup(given: &[ExternalValue], task: mockup::FmuOperation) -> Option<Arc<dyn ExternalFunction>> {
     match given.first()? {
-        Given::Object(Object::MockUp(pool)) => Some(Arc::new(mockup::Function::new(pool.clone(), task))),
+        ExternalValue::Object(ExternalObject::MockUp(pool)) => {
+            Some(Arc::new(mockup::FmuFunction::new(pool.clone(), task)))
+        }
         _ => None,
     }
 }
 
 /// A table as it was given: columns that all have as many numbers.
-struct Columns(Vec<Vec<f64>>);
+struct TableColumns(Vec<Vec<f64>>);
 
-impl Columns {
-    fn of(given: &[Given]) -> Result<Self, String> {
-        let Some(Given::Numbers { dims, values }) = given.get(2) else { return Err("it has no table".into()) };
+impl TableColumns {
+    fn of(given: &[ExternalValue]) -> Result<Self, String> {
+        let Some(ExternalValue::Numbers { dims, values }) = given.get(2) else { return Err("it has no table".into()) };
         let &[rows, columns] = dims.as_slice() else { return Err("its table is no matrix".into()) };
         let known: Option<Vec<f64>> = values.iter().copied().collect();
         let known = known.ok_or("its table is not known before the run")?;
@@ -227,12 +229,12 @@ impl Columns {
                 "its table has {rows} rows and {columns} columns, and at least one row and two columns are needed"
             ));
         }
-        Ok(Columns((0..columns).map(|j| (0..rows).map(|i| known[i * columns + j]).collect()).collect()))
+        Ok(TableColumns((0..columns).map(|j| (0..rows).map(|i| known[i * columns + j]).collect()).collect()))
     }
 
     /// The columns that were asked for, by their numbers from 1.
-    fn chosen(&self, given: &[Given], k: usize) -> Result<Vec<Vec<f64>>, String> {
-        let Some(Given::Numbers { values, .. }) = given.get(k) else { return Err("it says no columns".into()) };
+    fn chosen(&self, given: &[ExternalValue], k: usize) -> Result<Vec<Vec<f64>>, String> {
+        let Some(ExternalValue::Numbers { values, .. }) = given.get(k) else { return Err("it says no columns".into()) };
         let chosen = values.iter().map(|x| {
             let at = x.ok_or("its columns are not known before the run")? as usize;
             let column = self.0.get(at.wrapping_sub(1));
@@ -250,21 +252,21 @@ fn grows(x: &[f64], strictly: bool) -> Result<(), String> {
     }
 }
 
-fn option<T>(given: &[Given], k: usize, of: fn(f64) -> Option<T>, what: &str) -> Result<T, String> {
+fn option<T>(given: &[ExternalValue], k: usize, of: fn(f64) -> Option<T>, what: &str) -> Result<T, String> {
     number(given, k).and_then(of).ok_or(format!("its {what} is not known"))
 }
 
-fn curves(given: &[Given]) -> Result<Object, String> {
-    let columns = Columns::of(given)?;
+fn curves(given: &[ExternalValue]) -> Result<ExternalObject, String> {
+    let columns = TableColumns::of(given)?;
     let smoothness = option(given, 7, Smoothness::from_number, "smoothness")?;
     let extrapolation = option(given, 8, Extrapolation::from_number, "extrapolation").unwrap_or(Extrapolation::Slope);
     grows(&columns.0[0], true)?;
-    let curve = |y: &Vec<f64>| Curve::new(&columns.0[0], y, smoothness, extrapolation);
-    Ok(Object::Curves(Arc::new(columns.chosen(given, 5)?.iter().map(curve).collect())))
+    let curve = |y: &Vec<f64>| TableCurve::new(&columns.0[0], y, smoothness, extrapolation);
+    Ok(ExternalObject::Curves(Arc::new(columns.chosen(given, 5)?.iter().map(curve).collect())))
 }
 
-fn times(given: &[Given]) -> Result<Object, String> {
-    let columns = Columns::of(given)?;
+fn times(given: &[ExternalValue]) -> Result<ExternalObject, String> {
+    let columns = TableColumns::of(given)?;
     let options = (
         option(given, 8, Smoothness::from_number, "smoothness")?,
         option(given, 9, Extrapolation::from_number, "extrapolation")?,
@@ -272,11 +274,16 @@ fn times(given: &[Given]) -> Result<Object, String> {
     );
     let (start, shift) = (option(given, 5, Some, "start time")?, option(given, 10, Some, "shift of time")?);
     grows(&columns.0[0], false)?;
-    Ok(Object::Times(Arc::new(TimeTable::new(&columns.0[0], &columns.chosen(given, 6)?, options, (start, shift)))))
+    Ok(ExternalObject::Times(Arc::new(TimeTable::new(
+        &columns.0[0],
+        &columns.chosen(given, 6)?,
+        options,
+        (start, shift),
+    ))))
 }
 
-fn map(given: &[Given]) -> Result<Object, String> {
-    let columns = Columns::of(given)?;
+fn map(given: &[ExternalValue]) -> Result<ExternalObject, String> {
+    let columns = TableColumns::of(given)?;
     if columns.0[0].len() < 2 {
         return Err("its table has one row, and at least two are needed".into());
     }
@@ -287,36 +294,37 @@ fn map(given: &[Given]) -> Result<Object, String> {
     grows(&first, true)?;
     grows(&second, true)?;
     let values: Vec<f64> = (1..=first.len()).flat_map(|i| columns.0[1..].iter().map(move |c| c[i])).collect();
-    Ok(Object::Surface(Arc::new(Surface::new([first, second], &values, smoothness, extrapolation))))
+    Ok(ExternalObject::Surface(Arc::new(TableSurface::new([first, second], &values, smoothness, extrapolation))))
 }
 
 /// A column by its number, over an argument.
 #[derive(Debug)]
-struct OfCurves {
-    table: Arc<Vec<Curve>>,
+struct CurveLookup {
+    table: Arc<Vec<TableCurve>>,
     order: usize,
 }
 
-impl External for OfCurves {
+impl ExternalFunction for CurveLookup {
     fn value(&self, _: usize, args: &[f64]) -> f64 {
         let curve = self.table.get((args[0] as usize).wrapping_sub(1));
         curve.map_or(f64::NAN, |c| c.value(args[1], self.order, false))
     }
 
-    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
-        (input == 1)
-            .then(|| Arc::new(OfCurves { table: self.table.clone(), order: self.order + 1 }) as Arc<dyn External>)
+    fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
+        (input == 1).then(|| {
+            Arc::new(CurveLookup { table: self.table.clone(), order: self.order + 1 }) as Arc<dyn ExternalFunction>
+        })
     }
 }
 
 /// A column by its number, over time, the next event and what that was before.
 #[derive(Debug)]
-struct OfTime {
+struct TimeTableLookup {
     table: Arc<TimeTable>,
     order: usize,
 }
 
-impl External for OfTime {
+impl ExternalFunction for TimeTableLookup {
     fn value(&self, _: usize, args: &[f64]) -> f64 {
         let column = (args[0] as usize).wrapping_sub(1);
         if column >= self.table.curves.len() {
@@ -325,40 +333,42 @@ impl External for OfTime {
         self.table.value(column, [args[1], args[2], args[3]], self.order)
     }
 
-    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
-        (input == 1).then(|| Arc::new(OfTime { table: self.table.clone(), order: self.order + 1 }) as Arc<dyn External>)
+    fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
+        (input == 1).then(|| {
+            Arc::new(TimeTableLookup { table: self.table.clone(), order: self.order + 1 }) as Arc<dyn ExternalFunction>
+        })
     }
 }
 
 /// The next event of a table, over time.
 #[derive(Debug)]
-struct NextEvent(Arc<TimeTable>);
+struct NextTableEvent(Arc<TimeTable>);
 
-impl External for NextEvent {
+impl ExternalFunction for NextTableEvent {
     fn value(&self, _: usize, args: &[f64]) -> f64 {
         self.0.next_event(args[0])
     }
 
-    fn partial(&self, _: usize) -> Option<Arc<dyn External>> {
+    fn partial(&self, _: usize) -> Option<Arc<dyn ExternalFunction>> {
         None
     }
 }
 
 /// A map over two arguments.
 #[derive(Debug)]
-struct OfMap {
-    table: Arc<Surface>,
+struct SurfaceLookup {
+    table: Arc<TableSurface>,
     orders: [usize; 2],
 }
 
-impl External for OfMap {
+impl ExternalFunction for SurfaceLookup {
     fn value(&self, _: usize, args: &[f64]) -> f64 {
         self.table.value([args[0], args[1]], self.orders)
     }
 
-    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+    fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
         let mut orders = self.orders;
         orders[input] += 1;
-        Some(Arc::new(OfMap { table: self.table.clone(), orders }))
+        Some(Arc::new(SurfaceLookup { table: self.table.clone(), orders }))
     }
 }

@@ -1,7 +1,7 @@
 //! LAPACK's solvers of linear equations and least squares, by faer.
 
-use super::Given;
-use bramah_expr::function::External;
+use super::ExternalValue;
+use bramah_expr::function::ExternalFunction;
 use faer::Mat;
 use faer::linalg::solvers::Solve as _;
 use std::sync::Arc;
@@ -13,20 +13,20 @@ const RANK_LIMIT: f64 = 1e-14;
 ///
 /// The arguments are n, nrhs, A, lda, B and ldb, matrices row by row.
 #[derive(Debug, Default)]
-pub struct Solve {
+pub struct LinearSolve {
     /// Numbers of the arguments by which X is differentiated.
     by: Vec<usize>,
 }
 
 /// Where the matrices stand among the arguments.
-struct Places {
+struct MatrixOffsets {
     n: usize,
     columns: usize,
 }
 
-impl Places {
+impl MatrixOffsets {
     fn of(args: &[f64]) -> Option<Self> {
-        let places = Places { n: *args.first()? as usize, columns: *args.get(1)? as usize };
+        let places = MatrixOffsets { n: *args.first()? as usize, columns: *args.get(1)? as usize };
         (args.len() >= places.right_side() + places.n * places.columns).then_some(places)
     }
 
@@ -41,10 +41,10 @@ impl Places {
     }
 }
 
-impl Solve {
+impl LinearSolve {
     /// A*X_S = B_S - sum of E_i*X_{S without i}, for both sides are linear in their elements.
     fn derivative(
-        places: &Places,
+        places: &MatrixOffsets,
         args: &[f64],
         lu: &faer::linalg::solvers::PartialPivLu<f64>,
         by: &[usize],
@@ -70,9 +70,9 @@ impl Solve {
     }
 }
 
-impl External for Solve {
+impl ExternalFunction for LinearSolve {
     fn value(&self, output: usize, args: &[f64]) -> f64 {
-        let Some(places) = Places::of(args) else { return f64::NAN };
+        let Some(places) = MatrixOffsets::of(args) else { return f64::NAN };
         let (n, count) = (places.n, places.n * places.columns);
         let matrix = Mat::from_fn(n, n, |i, j| args[2 + i * n + j]);
         let lu = matrix.partial_piv_lu();
@@ -86,17 +86,19 @@ impl External for Solve {
         found[(output / places.columns, output % places.columns)]
     }
 
-    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+    fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
         let by = self.by.iter().copied().chain([input]).collect();
-        (input >= 2).then(|| Arc::new(Solve { by }) as Arc<dyn External>)
+        (input >= 2).then(|| Arc::new(LinearSolve { by }) as Arc<dyn ExternalFunction>)
     }
 }
 
 /// `dgelsy`: the shortest least-squares solution, `rank` and `info`. The arguments are those of the C call: nrow, ncol, nrhs,
 /// A, nrow, B, nx, jpvt, rcond, rank, work, lwork, info.
-pub fn least_squares(given: &[Given]) -> Option<Vec<Given>> {
+pub fn least_squares(given: &[ExternalValue]) -> Option<Vec<ExternalValue>> {
     let known = |k: usize| match given.get(k)? {
-        Given::Numbers { dims, values } => Some((dims.clone(), values.iter().copied().collect::<Option<Vec<f64>>>()?)),
+        ExternalValue::Numbers { dims, values } => {
+            Some((dims.clone(), values.iter().copied().collect::<Option<Vec<f64>>>()?))
+        }
         _ => None,
     };
     let count = |k: usize| known(k)?.1.first().map(|&x| x as usize);
@@ -120,8 +122,8 @@ pub fn least_squares(given: &[Given]) -> Option<Vec<Given>> {
             }
         }
     }
-    let single = |x: f64| Given::Numbers { dims: Vec::new(), values: vec![Some(x)] };
-    Some(vec![Given::Numbers { dims: shape, values }, single(rank as f64), single(0.0)])
+    let single = |x: f64| ExternalValue::Numbers { dims: Vec::new(), values: vec![Some(x)] };
+    Some(vec![ExternalValue::Numbers { dims: shape, values }, single(rank as f64), single(0.0)])
 }
 
 #[cfg(test)]
@@ -131,7 +133,7 @@ mod tests {
     #[test]
     fn derivatives_are_those_of_differences() {
         let args = [2.0, 1.0, 3.0, 1.0, -1.0, 2.0, 2.0, 5.0, 4.0, 2.0];
-        let solve = Solve::default();
+        let solve = LinearSolve::default();
         assert!((3.0 * solve.value(0, &args) + solve.value(1, &args) - 5.0).abs() < 1e-14);
         assert_eq!(solve.value(2, &args), 0.0);
         for input in [2, 3, 4, 5, 7, 8] {
@@ -155,14 +157,17 @@ mod tests {
 
     #[test]
     fn a_line_through_points() {
-        let of = |dims: Vec<usize>, v: &[f64]| Given::Numbers { dims, values: v.iter().copied().map(Some).collect() };
+        let of = |dims: Vec<usize>, v: &[f64]| ExternalValue::Numbers {
+            dims,
+            values: v.iter().copied().map(Some).collect(),
+        };
         let one = |x: f64| of(Vec::new(), &[x]);
         let nothing = || of(Vec::new(), &[]);
         let a = of(vec![3, 2], &[0.0, 1.0, 1.0, 1.0, 2.0, 1.0]);
         let b = of(vec![3], &[1.0, 3.0, 5.0]);
         let given = [one(3.0), one(2.0), one(1.0), a, one(3.0), b, one(3.0), nothing(), one(0.0)];
         let found = least_squares(&given).expect("all is known");
-        let Given::Numbers { values, .. } = &found[0] else { panic!("numbers") };
+        let ExternalValue::Numbers { values, .. } = &found[0] else { panic!("numbers") };
         assert!((values[0].unwrap_or(0.0) - 2.0).abs() < 1e-12 && (values[1].unwrap_or(0.0) - 1.0).abs() < 1e-12);
     }
 }

@@ -1,12 +1,12 @@
 //! The random number generators of `ModelicaRandom`: Vigna's xorshift64*, xorshift128+ and xorshift1024*
 //! (<https://prng.di.unimi.it>). A state is a row of 32-bit integers, the lower half of each 64-bit word first.
 
-use bramah_expr::function::External;
+use bramah_expr::function::ExternalFunction;
 use std::sync::Arc;
 
 /// A generator: from a state to the next state and a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Generator {
+pub enum RandomGenerator {
     /// xorshift64*, of two integers.
     Star64,
     /// xorshift128+, of four.
@@ -15,21 +15,21 @@ pub enum Generator {
     Star1024,
 }
 
-impl Generator {
+impl RandomGenerator {
     /// How many integers a state has.
     #[cfg(test)]
     fn size(self) -> usize {
         match self {
-            Generator::Star64 => 2,
-            Generator::Plus128 => 4,
-            Generator::Star1024 => 33,
+            RandomGenerator::Star64 => 2,
+            RandomGenerator::Plus128 => 4,
+            RandomGenerator::Star1024 => 33,
         }
     }
 
-    /// The next state, and a number above 0 and up to 1. `state` has [`Generator::size`] integers.
+    /// The next state, and a number above 0 and up to 1. `state` has 2, 4 or 33 integers.
     pub fn next(self, state: &mut [i32]) -> f64 {
         match self {
-            Generator::Star64 => {
+            RandomGenerator::Star64 => {
                 let mut x = word(state, 0);
                 x ^= x >> 12;
                 x ^= x << 25;
@@ -38,7 +38,7 @@ impl Generator {
                 set_word(state, 0, x);
                 number(x)
             }
-            Generator::Plus128 => {
+            RandomGenerator::Plus128 => {
                 let (mut a, b) = (word(state, 0), word(state, 1));
                 a ^= a << 23;
                 let sum = (a ^ b ^ (a >> 17) ^ (b >> 26)).wrapping_add(b);
@@ -46,7 +46,7 @@ impl Generator {
                 set_word(state, 1, sum);
                 number(sum)
             }
-            Generator::Star1024 => {
+            RandomGenerator::Star1024 => {
                 let at = usize::try_from(state[32] & 15).expect("four bits");
                 let next = (at + 1) & 15;
                 let (mut a, mut b) = (word(state, next), word(state, at));
@@ -78,9 +78,9 @@ fn number(x: u64) -> f64 {
 
 /// A generator as a function: of a state's integers the next ones, then the number.
 #[derive(Debug)]
-pub struct Draw(pub Generator);
+pub struct RandomDraw(pub RandomGenerator);
 
-impl External for Draw {
+impl ExternalFunction for RandomDraw {
     #[allow(clippy::cast_possible_truncation, reason = "integers of 32 bits")]
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         let mut state: Vec<i32> = args.iter().map(|x| *x as i64 as i32).collect();
@@ -88,7 +88,7 @@ impl External for Draw {
         state.get(output).map_or(drawn, |s| f64::from(*s))
     }
 
-    fn partial(&self, _: usize) -> Option<Arc<dyn External>> {
+    fn partial(&self, _: usize) -> Option<Arc<dyn ExternalFunction>> {
         None
     }
 }
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn numbers_spread_evenly_and_states_do_not_repeat() {
-        for generator in [Generator::Star64, Generator::Plus128, Generator::Star1024] {
+        for generator in [RandomGenerator::Star64, RandomGenerator::Plus128, RandomGenerator::Star1024] {
             let mut state: Vec<i32> = (0..generator.size()).map(|k| 17 * k as i32 + 5).collect();
             (0..100).for_each(|_| _ = generator.next(&mut state));
             let drawn: Vec<f64> = (0..10_000).map(|_| generator.next(&mut state)).collect();
@@ -114,7 +114,7 @@ mod tests {
     #[test]
     fn known_first_numbers() {
         let mut state = [1, 0];
-        let x = Generator::Star64.next(&mut state);
+        let x = RandomGenerator::Star64.next(&mut state);
         let by_hand = (1_u64 ^ 1 << 25).wrapping_mul(2_685_821_657_736_338_717);
         assert_eq!(word(&state, 0), by_hand);
         assert!((x - number(by_hand)).abs() < 1e-15);

@@ -6,7 +6,7 @@ use super::options::{Extrapolation, Smoothness};
 
 /// Values over a grid of growing abscissae.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Surface {
+pub struct TableSurface {
     axes: [Vec<f64>; 2],
     /// Value, slope along the first axis, along the second, and both, at each point, row by row.
     points: Vec<[f64; 4]>,
@@ -16,7 +16,7 @@ pub struct Surface {
 
 /// A place along an axis: the point before, the share of the way to the next, the distance of both, what lies beyond the
 /// end, and whether that follows the argument.
-struct Place {
+struct GridPosition {
     at: usize,
     share: f64,
     width: f64,
@@ -24,7 +24,7 @@ struct Place {
     moves: bool,
 }
 
-impl Surface {
+impl TableSurface {
     /// `values` row by row: one row for each abscissa of the first axis.
     pub fn new(axes: [Vec<f64>; 2], values: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Self {
         let [n, m] = [axes[0].len(), axes[1].len()];
@@ -44,7 +44,7 @@ impl Surface {
                 }
             }
         }
-        Surface { axes, points, smoothness, extrapolation }
+        TableSurface { axes, points, smoothness, extrapolation }
     }
 
     /// The least and the largest abscissae.
@@ -70,11 +70,11 @@ impl Surface {
         sum
     }
 
-    fn place(&self, axis: usize, u: f64) -> Option<Place> {
+    fn place(&self, axis: usize, u: f64) -> Option<GridPosition> {
         let x = &self.axes[axis];
         let n = x.len();
         if n == 1 {
-            return Some(Place { at: 0, share: 0.0, width: 1.0, beyond: 0.0, moves: false });
+            return Some(GridPosition { at: 0, share: 0.0, width: 1.0, beyond: 0.0, moves: false });
         }
         let (from, to) = (x[0], x[n - 1]);
         let mut inside = u;
@@ -99,11 +99,11 @@ impl Surface {
             at = at.min(n - 2);
         }
         let width = if at + 1 < n { x[at + 1] - x[at] } else { 1.0 };
-        Some(Place { at, share: (inside - x[at]) / width, width, beyond, moves })
+        Some(GridPosition { at, share: (inside - x[at]) / width, width, beyond, moves })
     }
 
     /// What the values and the slopes at the two points around a place count.
-    fn weights(&self, p: &Place, order: usize) -> [[f64; 2]; 2] {
+    fn weights(&self, p: &GridPosition, order: usize) -> [[f64; 2]; 2] {
         let still = [[1.0, 0.0], [0.0, 0.0]];
         let none = [[0.0; 2]; 2];
         if self.smoothness == Smoothness::Constant || p.width == 1.0 && !p.moves && p.share == 0.0 {
@@ -143,7 +143,7 @@ fn sum(a: [[f64; 2]; 2], b: [[f64; 2]; 2], factor: f64) -> [[f64; 2]; 2] {
     std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + factor * b[i][j]))
 }
 
-fn linear(p: &Place, order: usize) -> [[f64; 2]; 2] {
+fn linear(p: &GridPosition, order: usize) -> [[f64; 2]; 2] {
     match order {
         0 => [[1.0 - p.share, 0.0], [p.share, 0.0]],
         1 => [[-1.0 / p.width, 0.0], [1.0 / p.width, 0.0]],
@@ -152,7 +152,7 @@ fn linear(p: &Place, order: usize) -> [[f64; 2]; 2] {
 }
 
 /// Hermite's cubic weights over the share of a cell, or their derivatives by the abscissa.
-fn hermite(p: &Place, order: usize) -> [[f64; 2]; 2] {
+fn hermite(p: &GridPosition, order: usize) -> [[f64; 2]; 2] {
     let (t, h) = (p.share, p.width);
     let polynomial = |c: [f64; 4]| match order {
         0 => c[0] + t * (c[1] + t * (c[2] + t * c[3])),
@@ -170,11 +170,11 @@ fn hermite(p: &Place, order: usize) -> [[f64; 2]; 2] {
 mod tests {
     use super::*;
 
-    fn surface(smoothness: Smoothness, extrapolation: Extrapolation, z: impl Fn(f64, f64) -> f64) -> Surface {
+    fn surface(smoothness: Smoothness, extrapolation: Extrapolation, z: impl Fn(f64, f64) -> f64) -> TableSurface {
         let axes = [vec![0.0, 1.0, 3.0, 4.0], vec![-1.0, 0.0, 2.0]];
         let values: Vec<f64> =
             axes[0].iter().flat_map(|a| axes[1].iter().map(|b| z(*a, *b)).collect::<Vec<_>>()).collect();
-        Surface::new(axes.clone(), &values, smoothness, extrapolation)
+        TableSurface::new(axes.clone(), &values, smoothness, extrapolation)
     }
 
     #[test]

@@ -1,14 +1,14 @@
 //! Tables over time, as `ModelicaStandardTables` has them: curves that begin at a time, are shifted in time, and have events
 //! at their corners.
 
-use super::curve::Curve;
+use super::curve::TableCurve;
 use super::options::{Extrapolation, Smoothness, TimeEvents};
 
 /// Curves over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeTable {
     /// One a column.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<TableCurve>,
     /// Before this time the value is 0, s.
     pub start: f64,
     /// Added to the times of the table, s.
@@ -26,7 +26,7 @@ impl TimeTable {
         (smoothness, extrapolation, events): (Smoothness, Extrapolation, TimeEvents),
         (start, shift): (f64, f64),
     ) -> Self {
-        let curves = columns.iter().map(|y| Curve::new(times, y, smoothness, extrapolation)).collect();
+        let curves = columns.iter().map(|y| TableCurve::new(times, y, smoothness, extrapolation)).collect();
         let bent = matches!(smoothness, Smoothness::Linear | Smoothness::Constant);
         let last = times.len() - 1;
         let happens = |k: usize| match events {

@@ -1,7 +1,7 @@
 //! `modelDescription.xml`, by the schemas of FMI 2.0.5 and 3.0.2.
 
-use super::interface::{Causality, Interface, Port, Role};
-use bramah_expr::units::Unit;
+use super::interface::{FmiCausality, FmiInterface, FmiVariable, ModelExchangeRole};
+use bramah_expr::units::MeasurementUnit;
 use bramah_plot::svg::escape;
 use bramah_results::{Kind, number};
 use std::collections::{BTreeMap, BTreeSet};
@@ -12,7 +12,7 @@ pub const IDENTIFIER: &str = "bramah";
 
 /// Which standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Version {
+pub enum FmiVersion {
     /// FMI 2.0
     Two,
     /// FMI 3.0
@@ -21,8 +21,8 @@ pub enum Version {
 
 /// Writes the description. `token` marks this unit and its texts. There is no date in it: the same circuit gives the same
 /// unit.
-pub fn write(interface: &Interface, version: Version, token: &str, description: &str) -> String {
-    let three = version == Version::Three;
+pub fn write(interface: &FmiInterface, version: FmiVersion, token: &str, description: &str) -> String {
+    let three = version == FmiVersion::Three;
     let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     let guid = if three { "instantiationToken" } else { "guid" };
     let _ = writeln!(
@@ -81,7 +81,7 @@ fn line(text: &str) -> String {
 }
 
 /// Units as powers of the base units, and the units for people as factors of them.
-fn units(out: &mut String, interface: &Interface) {
+fn units(out: &mut String, interface: &FmiInterface) {
     let mut all: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for signal in interface.ports.iter().map(|p| &p.signal).filter(|s| !s.unit.is_empty() && s.kind == Kind::Real) {
         let shown = all.entry(&signal.unit).or_default();
@@ -94,13 +94,15 @@ fn units(out: &mut String, interface: &Interface) {
     }
     out.push_str("  <UnitDefinitions>\n");
     for (name, shown) in all {
-        let Ok(unit) = Unit::parse(name) else {
+        let Ok(unit) = MeasurementUnit::parse(name) else {
             let _ = writeln!(out, "    <Unit name=\"{}\"/>", escape(name));
             continue;
         };
         let _ = writeln!(out, "    <Unit name=\"{}\">\n      <BaseUnit{}/>", escape(name), base(&unit));
         for other in shown {
-            let Some((factor, offset)) = Unit::parse(other).ok().and_then(|o| linear(&unit, &o)) else { continue };
+            let Some((factor, offset)) = MeasurementUnit::parse(other).ok().and_then(|o| linear(&unit, &o)) else {
+                continue;
+            };
             let offset = if offset == 0.0 { String::new() } else { format!(" offset=\"{}\"", number::text(offset)) };
             let _ = writeln!(
                 out,
@@ -115,7 +117,7 @@ fn units(out: &mut String, interface: &Interface) {
 }
 
 /// Attributes of a `BaseUnit`: exponents that are not 0, factor and offset.
-fn base(unit: &Unit) -> String {
+fn base(unit: &MeasurementUnit) -> String {
     let mut out = String::new();
     // the standard has whole exponents only
     let Some(exponents) = unit.exponents() else { return out };
@@ -135,12 +137,12 @@ fn base(unit: &Unit) -> String {
 }
 
 /// `other = factor*unit + offset`.
-fn linear(unit: &Unit, other: &Unit) -> Option<(f64, f64)> {
+fn linear(unit: &MeasurementUnit, other: &MeasurementUnit) -> Option<(f64, f64)> {
     let offset = unit.convert(0.0, other)?;
     Some((unit.convert(1.0, other)? - offset, offset))
 }
 
-fn types(out: &mut String, interface: &Interface, three: bool) {
+fn types(out: &mut String, interface: &FmiInterface, three: bool) {
     let mut seen = BTreeSet::new();
     let mut text = String::new();
     for port in &interface.ports {
@@ -167,18 +169,18 @@ fn type_name(literals: &[String]) -> String {
 }
 
 /// Causality, variability and `initial`.
-fn words(port: &Port) -> (&'static str, &'static str, Option<&'static str>) {
+fn words(port: &FmiVariable) -> (&'static str, &'static str, Option<&'static str>) {
     let varies = if port.signal.kind == Kind::Real { "continuous" } else { "discrete" };
     match port.causality {
-        Causality::Parameter => ("parameter", "fixed", Some("exact")),
-        Causality::Calculated => ("calculatedParameter", "fixed", Some("calculated")),
-        Causality::Input => ("input", varies, None),
-        Causality::Output => ("output", varies, Some("calculated")),
-        Causality::Local => ("local", varies, Some("calculated")),
+        FmiCausality::Parameter => ("parameter", "fixed", Some("exact")),
+        FmiCausality::Calculated => ("calculatedParameter", "fixed", Some("calculated")),
+        FmiCausality::Input => ("input", varies, None),
+        FmiCausality::Output => ("output", varies, Some("calculated")),
+        FmiCausality::Local => ("local", varies, Some("calculated")),
     }
 }
 
-fn head(port: &Port, reference: usize) -> String {
+fn head(port: &FmiVariable, reference: usize) -> String {
     let (causality, variability, initial) = words(port);
     let mut out = format!(
         "name=\"{}\" valueReference=\"{reference}\" causality=\"{causality}\" variability=\"{variability}\"",
@@ -194,7 +196,7 @@ fn head(port: &Port, reference: usize) -> String {
 }
 
 /// Unit, limits and start value of a number.
-fn number_attributes(port: &Port) -> String {
+fn number_attributes(port: &FmiVariable) -> String {
     let signal = &port.signal;
     let mut out = String::new();
     if let Kind::Enumeration(literals) = &signal.kind {
@@ -202,7 +204,7 @@ fn number_attributes(port: &Port) -> String {
     }
     if signal.kind == Kind::Real && !signal.unit.is_empty() {
         let _ = write!(out, " unit=\"{}\"", escape(&signal.unit));
-        let known = Unit::parse(&signal.unit).ok().zip(Unit::parse(&signal.display_unit).ok());
+        let known = MeasurementUnit::parse(&signal.unit).ok().zip(MeasurementUnit::parse(&signal.display_unit).ok());
         let other = !signal.display_unit.is_empty() && signal.display_unit != signal.unit;
         if other && known.is_some_and(|(u, d)| u.convert(0.0, &d).is_some()) {
             let _ = write!(out, " displayUnit=\"{}\"", escape(&signal.display_unit));
@@ -228,7 +230,7 @@ fn text(value: f64, whole: bool) -> String {
     if whole { format!("{}", value as i64) } else { number::text(value) }
 }
 
-fn variable_3(port: &Port, reference: usize) -> String {
+fn variable_3(port: &FmiVariable, reference: usize) -> String {
     let head = head(port, reference);
     match port.signal.kind {
         Kind::Real => format!("    <Float64 {head}{}{}/>\n", number_attributes(port), derivative(port, 1)),
@@ -238,7 +240,7 @@ fn variable_3(port: &Port, reference: usize) -> String {
     }
 }
 
-fn variable_2(port: &Port, reference: usize) -> String {
+fn variable_2(port: &FmiVariable, reference: usize) -> String {
     let head = head(port, reference);
     let inner = match port.signal.kind {
         // the time comes first
@@ -250,26 +252,26 @@ fn variable_2(port: &Port, reference: usize) -> String {
     format!("    <ScalarVariable {head}>{inner}</ScalarVariable>\n")
 }
 
-fn boolean_start(port: &Port) -> String {
+fn boolean_start(port: &FmiVariable) -> String {
     port.start.map_or_else(String::new, |s| format!(" start=\"{}\"", s != 0.0))
 }
 
 /// Names the state of a derivative, where the first variable has this number.
-fn derivative(port: &Port, first: usize) -> String {
+fn derivative(port: &FmiVariable, first: usize) -> String {
     match port.role {
-        Role::Rate(state) => format!(" derivative=\"{}\"", state + first),
+        ModelExchangeRole::Rate(state) => format!(" derivative=\"{}\"", state + first),
         _ => String::new(),
     }
 }
 
 /// Outputs, derivatives, and what is computed at the start; what they depend on is left open, which means everything.
-fn structure(out: &mut String, interface: &Interface, three: bool) {
+fn structure(out: &mut String, interface: &FmiInterface, three: bool) {
     let indexed = || interface.ports.iter().zip(1_usize..);
-    let outputs: Vec<usize> = indexed().filter(|(p, _)| p.causality == Causality::Output).map(|(_, i)| i).collect();
+    let outputs: Vec<usize> = indexed().filter(|(p, _)| p.causality == FmiCausality::Output).map(|(_, i)| i).collect();
     let rates: Vec<usize> = interface.rates().iter().map(|i| i + 1).collect();
-    let is_state = |i: usize| interface.ports.iter().any(|p| p.role == Role::Rate(i - 1));
-    let unknown = |p: &Port, i: usize| {
-        matches!(p.causality, Causality::Output | Causality::Calculated) || rates.contains(&i) || is_state(i)
+    let is_state = |i: usize| interface.ports.iter().any(|p| p.role == ModelExchangeRole::Rate(i - 1));
+    let unknown = |p: &FmiVariable, i: usize| {
+        matches!(p.causality, FmiCausality::Output | FmiCausality::Calculated) || rates.contains(&i) || is_state(i)
     };
     let unknowns: Vec<usize> = indexed().filter(|(p, i)| unknown(p, *i)).map(|(_, i)| i).collect();
     if three {

@@ -8,5 +8,5 @@ pub mod description;
 pub mod interface;
 pub mod packed;
 
-pub use interface::{Causality, Interface, Port, Role};
-pub use packed::{Packed, Recorder};
+pub use interface::{FmiCausality, FmiInterface, FmiVariable, ModelExchangeRole};
+pub use packed::{PackedRequest, ReadRecorder};

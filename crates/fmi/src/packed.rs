@@ -13,7 +13,7 @@ pub const FILE: &str = "model.json";
 
 /// A request with everything that was read for it, under the paths that it had.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct Packed {
+pub struct PackedRequest {
     /// Marks unit and description as belonging together.
     pub token: String,
     source: String,
@@ -26,7 +26,7 @@ pub struct Packed {
     folders: BTreeMap<String, Vec<(String, bool)>>,
 }
 
-impl Packed {
+impl PackedRequest {
     /// The request that is to be compiled.
     pub fn request(&self) -> Request {
         Request {
@@ -43,7 +43,7 @@ impl Packed {
         serde_json::to_string(self).expect("texts always serialize")
     }
 
-    /// Reads what [`Packed::json`] has written.
+    /// Reads what [`PackedRequest::json`] has written.
     ///
     /// # Errors
     /// Why it cannot be read.
@@ -52,7 +52,7 @@ impl Packed {
     }
 }
 
-impl World for Packed {
+impl World for PackedRequest {
     fn read(&self, path: &Path) -> Result<String, String> {
         let missing = || format!("the unit holds no file `{}`", path.display());
         self.files.get(&name(path)).cloned().ok_or_else(missing)
@@ -68,19 +68,19 @@ fn name(path: &Path) -> String {
 }
 
 /// A world that notes what is read.
-pub struct Recorder<'a> {
+pub struct ReadRecorder<'a> {
     base: &'a dyn World,
-    seen: Mutex<Packed>,
+    seen: Mutex<PackedRequest>,
 }
 
-impl<'a> Recorder<'a> {
+impl<'a> ReadRecorder<'a> {
     /// Notes what is read of `base`.
     pub fn new(base: &'a dyn World) -> Self {
-        Recorder { base, seen: Mutex::default() }
+        ReadRecorder { base, seen: Mutex::default() }
     }
 
     /// What was read for a request.
-    pub fn packed(self, request: &Request, outputs: &[String], token: &str) -> Packed {
+    pub fn packed(self, request: &Request, outputs: &[String], token: &str) -> PackedRequest {
         let mut packed = self.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
         packed.source = name(&request.source);
         packed.model.clone_from(&request.model);
@@ -92,7 +92,7 @@ impl<'a> Recorder<'a> {
     }
 }
 
-impl World for Recorder<'_> {
+impl World for ReadRecorder<'_> {
     fn read(&self, path: &Path) -> Result<String, String> {
         let text = self.base.read(path)?;
         self.seen.lock().unwrap_or_else(PoisonError::into_inner).files.insert(name(path), text.clone());
@@ -132,13 +132,13 @@ mod tests {
             overrides: vec![Override { name: "leak.k".into(), value: "5".into() }],
             ..Request::default()
         };
-        let recorder = Recorder::new(&world);
+        let recorder = ReadRecorder::new(&world);
         Simulation::compile(&recorder, &request).unwrap();
         let text = recorder.packed(&request, &[], "t").json();
         assert!(!text.contains("Unused end"), "{text}");
-        let packed = Packed::from_json(&text).unwrap();
+        let packed = PackedRequest::from_json(&text).unwrap();
         let again = Simulation::compile(&packed, &packed.request()).unwrap();
         assert_eq!(again.get("leak.k").unwrap(), 5.0);
-        assert!(Packed::from_json("{").is_err());
+        assert!(PackedRequest::from_json("{").is_err());
     }
 }

@@ -4,13 +4,13 @@
 //! commands before they reach the plant, each signal of the study is a variable of its name behind its sensor effects,
 //! and inside the plant every node that an effect touches gets one tap of the node's own connector class.
 
-use super::circuit::{Circuit, Link, ModelInput};
-use super::effects::{Effect, own_classes};
-use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
+use super::circuit::{CircuitTopology, ModelInput, SignalLink};
+use super::effects::{EffectModel, own_classes};
+use super::hypotheses::{AttachmentSite, EffectAttachment, Hypothesis, SensorSignal};
 use bramah_circuit::compiled::CompiledModel;
-use bramah_expr::units::Unit;
-use bramah_model::compile::{Outcome, Request};
-use bramah_model::flat::Type;
+use bramah_expr::units::MeasurementUnit;
+use bramah_model::compile::{CompileOutcome, Request};
+use bramah_model::flat::ScalarType;
 use bramah_model::instance::Override;
 use bramah_solve::lower;
 use bramah_syntax::world::{MemoryWorld, Overlay, World};
@@ -30,7 +30,7 @@ const LONGEST_SUM: usize = 100;
 
 /// A hypothesis with a name and values.
 #[derive(Clone, Debug)]
-pub struct Attached<'a> {
+pub struct HypothesisInstance<'a> {
     /// Its name in the augmented model, a Modelica identifier of its own.
     pub name: String,
     /// What is attached. Hypotheses of family `parameter` add nothing: their parameter is there already.
@@ -41,7 +41,7 @@ pub struct Attached<'a> {
 
 /// The augmented model.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Augmented {
+pub struct AugmentedModel {
     /// The text of the model `Augmented`.
     pub text: String,
     /// For each attached hypothesis the name of each of its coefficients and shapes (in this order) as a parameter of
@@ -50,12 +50,12 @@ pub struct Augmented {
     /// The variable of each signal of the study, sensor effects included.
     pub signals: Vec<String>,
     /// Signals inside the nominal model whose statements the text replaces.
-    pub replaced: Vec<Link>,
+    pub replaced: Vec<SignalLink>,
 }
 
 /// How the model is written.
 #[derive(Clone, Debug)]
-pub(super) struct Form<'a> {
+pub(super) struct AugmentationForm<'a> {
     /// Its name.
     pub class: &'a str,
     /// The nominal class is a copy from which connections cut by Series elements are already gone.
@@ -67,17 +67,31 @@ pub(super) struct Form<'a> {
 }
 
 /// Writes the nominal model with effects attached.
-pub fn augment(circuit: &Circuit, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
-    written(circuit, attached, signals, Form { class: "Augmented", cut: false, drifts: &[], annotation: String::new() })
+pub fn augment(
+    circuit: &CircuitTopology,
+    attached: &[HypothesisInstance<'_>],
+    signals: &[SensorSignal],
+) -> AugmentedModel {
+    written(
+        circuit,
+        attached,
+        signals,
+        AugmentationForm { class: "Augmented", cut: false, drifts: &[], annotation: String::new() },
+    )
 }
 
 /// Writes it in the form wanted.
-pub(super) fn written(circuit: &Circuit, attached: &[Attached<'_>], signals: &[Signal], form: Form<'_>) -> Augmented {
-    Writer {
+pub(super) fn written(
+    circuit: &CircuitTopology,
+    attached: &[HypothesisInstance<'_>],
+    signals: &[SensorSignal],
+    form: AugmentationForm<'_>,
+) -> AugmentedModel {
+    AugmentationWriter {
         circuit,
         form,
-        plant: Body::default(),
-        around: Body::default(),
+        plant: AugmentedClassBody::default(),
+        around: AugmentedClassBody::default(),
         taps: BTreeMap::new(),
         drops: BTreeMap::new(),
         cut: BTreeSet::new(),
@@ -93,9 +107,9 @@ pub fn compile(
     world: &dyn World,
     nominal: &Request,
     folder: Option<&Path>,
-    augmented: &Augmented,
-    options: &lower::Options,
-) -> Outcome<CompiledModel> {
+    augmented: &AugmentedModel,
+    options: &lower::LoweringOptions,
+) -> CompileOutcome<CompiledModel> {
     let (overlay, request) = request(world, nominal, folder, augmented, "Augmented");
     bramah_circuit::compiled::compile(&overlay, &request, options)
 }
@@ -105,7 +119,7 @@ pub(super) fn request<'a>(
     world: &'a dyn World,
     nominal: &Request,
     folder: Option<&Path>,
-    augmented: &Augmented,
+    augmented: &AugmentedModel,
     class: &str,
 ) -> (Overlay<'a>, Request) {
     let source = PathBuf::from(SOURCE);
@@ -140,16 +154,16 @@ pub(super) fn request<'a>(
 
 /// Declarations and equations of one class.
 #[derive(Default)]
-struct Body {
+struct AugmentedClassBody {
     declarations: String,
     equations: String,
 }
 
-struct Writer<'a> {
-    circuit: &'a Circuit,
-    form: Form<'a>,
-    plant: Body,
-    around: Body,
+struct AugmentationWriter<'a> {
+    circuit: &'a CircuitTopology,
+    form: AugmentationForm<'a>,
+    plant: AugmentedClassBody,
+    around: AugmentedClassBody,
     /// What is drawn from the nodes that have a tap.
     taps: BTreeMap<usize, Vec<String>>,
     /// What falls at the ports that are cut off.
@@ -158,7 +172,7 @@ struct Writer<'a> {
     cut: BTreeSet<usize>,
     /// Connector classes that have a tap class, each with a port as example.
     classes: Vec<(&'a str, usize)>,
-    replaced: Vec<Link>,
+    replaced: Vec<SignalLink>,
 }
 
 /// The instance of a hypothesis at the i-th of its places.
@@ -166,16 +180,18 @@ pub(super) fn instance(name: &str, i: usize) -> String {
     format!("{name}_{}", i + 1)
 }
 
-impl<'a> Writer<'a> {
-    fn write(mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Augmented {
+impl<'a> AugmentationWriter<'a> {
+    fn write(mut self, attached: &[HypothesisInstance<'_>], signals: &[SensorSignal]) -> AugmentedModel {
         let parameters = attached.iter().map(|a| self.parameters(a)).collect();
         self.cut = cut(attached);
         self.rejoin();
         for a in attached {
             for (i, at) in a.hypothesis.attachments.iter().enumerate() {
                 match (&at.effect, &at.site) {
-                    (Some(effect), Site::Node(_) | Site::Across(..)) => self.physical(a, i, at, effect),
-                    (Some(effect), Site::Into(port)) => self.series(a, i, at, effect, *port),
+                    (Some(effect), AttachmentSite::Node(_) | AttachmentSite::Across(..)) => {
+                        self.physical(a, i, at, effect)
+                    }
+                    (Some(effect), AttachmentSite::Into(port)) => self.series(a, i, at, effect, *port),
                     _ => {}
                 }
             }
@@ -185,18 +201,18 @@ impl<'a> Writer<'a> {
         let signals = self.signals(attached, signals);
         self.fall();
         self.draw();
-        Augmented { text: self.text(), parameters, signals, replaced: self.replaced }
+        AugmentedModel { text: self.text(), parameters, signals, replaced: self.replaced }
     }
 
     /// Declares the coefficients and shapes of a hypothesis, and gives their full names.
-    fn parameters(&mut self, a: &Attached<'_>) -> Vec<String> {
+    fn parameters(&mut self, a: &HypothesisInstance<'_>) -> Vec<String> {
         let h = a.hypothesis;
-        if let Site::Parameter(name) = &h.attachments[0].site {
+        if let AttachmentSite::Parameter(name) = &h.attachments[0].site {
             return vec![format!("{PLANT}.{name}")];
         }
         let inside = match &h.attachments[0].site {
-            Site::Command(name) => self.circuit.link(name).is_some(),
-            site => matches!(site, Site::Node(_) | Site::Across(..) | Site::Into(_)),
+            AttachmentSite::Command(name) => self.circuit.link(name).is_some(),
+            site => matches!(site, AttachmentSite::Node(_) | AttachmentSite::Across(..) | AttachmentSite::Into(_)),
         };
         let body = if inside { &mut self.plant } else { &mut self.around };
         let given = |name: &str| a.values.iter().find(|(n, _)| n == name).map(|(_, v)| *v);
@@ -213,7 +229,12 @@ impl<'a> Writer<'a> {
     }
 
     /// An instance of an effect, its coefficients and shapes bound to those of the hypothesis.
-    fn declaration(a: &Attached<'_>, i: usize, effect: &Effect, base: &[(String, String)]) -> (String, String) {
+    fn declaration(
+        a: &HypothesisInstance<'_>,
+        i: usize,
+        effect: &EffectModel,
+        base: &[(String, String)],
+    ) -> (String, String) {
         let instance = instance(&a.name, i);
         let of_all = |name: &str| {
             let own = a.hypothesis.coefficients.iter().filter(|c| c.name == name);
@@ -227,12 +248,12 @@ impl<'a> Writer<'a> {
         (instance, text)
     }
 
-    fn physical(&mut self, a: &Attached<'_>, i: usize, at: &Attachment, effect: &Effect) {
+    fn physical(&mut self, a: &HypothesisInstance<'_>, i: usize, at: &EffectAttachment, effect: &EffectModel) {
         let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
         self.plant.declarations.push_str(&declaration);
         let ports: &[usize] = match &at.site {
-            Site::Node(p) => &[*p],
-            Site::Across(x, y) => &[*x, *y],
+            AttachmentSite::Node(p) => &[*p],
+            AttachmentSite::Across(x, y) => &[*x, *y],
             _ => &[],
         };
         let Some(through) = &effect.interface.through else { return };
@@ -252,14 +273,21 @@ impl<'a> Writer<'a> {
     }
 
     /// Gives an effect the temperature that it reads, in kelvin.
-    fn warm(&mut self, instance: &str, at: &Attachment, effect: &Effect) {
+    fn warm(&mut self, instance: &str, at: &EffectAttachment, effect: &EffectModel) {
         if let (Some((input, offset)), Some(name)) = (&at.temperature, &effect.interface.temperature) {
             let _ = writeln!(self.plant.equations, "    {instance}.{name} = {input} + {offset:e};");
         }
     }
 
     /// Puts an effect between a port that was cut off and the rest of its node; several lie one behind the other.
-    fn series(&mut self, a: &Attached<'_>, i: usize, at: &Attachment, effect: &Effect, port: usize) {
+    fn series(
+        &mut self,
+        a: &HypothesisInstance<'_>,
+        i: usize,
+        at: &EffectAttachment,
+        effect: &EffectModel,
+        port: usize,
+    ) {
         let (Some(through), Some(drop)) = (&effect.interface.through, &effect.interface.drop) else { return };
         let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
         self.plant.declarations.push_str(&declaration);
@@ -324,7 +352,7 @@ impl<'a> Writer<'a> {
     /// Gives an effect the potential of a port, in SI units.
     fn read(&mut self, instance: &str, potential: &str, tap: &str, port: usize) {
         let q = &self.circuit.ports[port].potential;
-        let offset = Unit::parse(&q.unit).map_or(0.0, |u| u.offset);
+        let offset = MeasurementUnit::parse(&q.unit).map_or(0.0, |u| u.offset);
         let plus = if offset == 0.0 { String::new() } else { format!(" + {offset:e}") };
         let value = format!("{tap}.port.{}{}{plus}", q.name, scaled("*", factor(&q.unit)));
         let _ = writeln!(self.plant.equations, "    {instance}.{potential} = {value};");
@@ -369,7 +397,7 @@ impl<'a> Writer<'a> {
     }
 
     /// The inputs of the plant, each behind the effects on its command.
-    fn inputs(&mut self, attached: &[Attached<'_>]) {
+    fn inputs(&mut self, attached: &[HypothesisInstance<'_>]) {
         let mut arrays: Vec<&str> = Vec::new();
         for input in &self.circuit.inputs {
             let base = input.name.split('[').next().unwrap_or(&input.name);
@@ -377,17 +405,17 @@ impl<'a> Writer<'a> {
                 arrays.push(base);
                 self.around.declarations.push_str(&input_declaration(self.circuit, base, input));
             }
-            let site = Site::Command(input.name.clone());
+            let site = AttachmentSite::Command(input.name.clone());
             let last = chain(&mut self.around, attached, &site, input.name.clone());
             let _ = writeln!(self.around.equations, "  {PLANT}.{} = {last};", input.name);
         }
     }
 
     /// Signals inside the plant on which effects act.
-    fn links(&mut self, attached: &[Attached<'_>]) {
+    fn links(&mut self, attached: &[HypothesisInstance<'_>]) {
         for link in &self.circuit.links {
             let name = &link.signal.name;
-            let site = Site::Command(name.clone());
+            let site = AttachmentSite::Command(name.clone());
             if !attached.iter().any(|a| a.hypothesis.attachments.iter().any(|at| at.site == site)) {
                 continue;
             }
@@ -398,14 +426,14 @@ impl<'a> Writer<'a> {
     }
 
     /// The signals of the study, each behind the effects of its sensor.
-    fn signals(&mut self, attached: &[Attached<'_>], signals: &[Signal]) -> Vec<String> {
+    fn signals(&mut self, attached: &[HypothesisInstance<'_>], signals: &[SensorSignal]) -> Vec<String> {
         let mut names = Vec::new();
         for (i, s) in signals.iter().enumerate() {
             let name = self.signal_name(&s.name);
             let unit = self.circuit.units.get(&s.variable).map_or(String::new(), |u| unit_of(u));
             let _ = writeln!(self.plant.declarations, "    Real gap_true_{}{unit};", i + 1);
             let _ = writeln!(self.plant.equations, "    gap_true_{} = {};", i + 1, s.variable);
-            let (site, from) = (Site::Sensor(s.name.clone()), format!("{PLANT}.gap_true_{}", i + 1));
+            let (site, from) = (AttachmentSite::Sensor(s.name.clone()), format!("{PLANT}.gap_true_{}", i + 1));
             let last = chain(&mut self.around, attached, &site, from);
             let _ = writeln!(self.around.declarations, "  output Real {name}{unit};");
             let _ = writeln!(self.around.equations, "  {name} = {last};");
@@ -452,12 +480,17 @@ impl<'a> Writer<'a> {
 }
 
 /// Puts all signal effects of a site in a row behind `from`; gives the end of the row.
-fn chain(body: &mut Body, attached: &[Attached<'_>], site: &Site, from: String) -> String {
+fn chain(
+    body: &mut AugmentedClassBody,
+    attached: &[HypothesisInstance<'_>],
+    site: &AttachmentSite,
+    from: String,
+) -> String {
     let mut last = from;
     for a in attached {
         for (i, at) in a.hypothesis.attachments.iter().enumerate().filter(|(_, at)| at.site == *site) {
             let Some(effect) = &at.effect else { continue };
-            let (instance, declaration) = Writer::declaration(a, i, effect, &at.base);
+            let (instance, declaration) = AugmentationWriter::declaration(a, i, effect, &at.base);
             body.declarations.push_str(&declaration);
             let _ = writeln!(body.equations, "    {instance}.u = {last};");
             last = format!("{instance}.y");
@@ -467,13 +500,13 @@ fn chain(body: &mut Body, attached: &[Attached<'_>], site: &Site, from: String) 
 }
 
 /// Ports that Series elements take out of their nodes.
-pub(super) fn cut(attached: &[Attached<'_>]) -> BTreeSet<usize> {
+pub(super) fn cut(attached: &[HypothesisInstance<'_>]) -> BTreeSet<usize> {
     let places = attached.iter().flat_map(|a| &a.hypothesis.attachments);
-    places.filter_map(|at| if let Site::Into(p) = at.site { Some(p) } else { None }).collect()
+    places.filter_map(|at| if let AttachmentSite::Into(p) = at.site { Some(p) } else { None }).collect()
 }
 
 /// Connections that touch a port taken out.
-pub(super) fn broken(circuit: &Circuit, cut: &BTreeSet<usize>) -> impl Iterator<Item = (usize, usize)> {
+pub(super) fn broken(circuit: &CircuitTopology, cut: &BTreeSet<usize>) -> impl Iterator<Item = (usize, usize)> {
     let touches = |(a, b, _): &&(usize, usize, usize)| cut.contains(a) || cut.contains(b);
     circuit.connections.iter().filter(touches).map(|&(a, b, _)| (a, b))
 }
@@ -492,7 +525,7 @@ fn sum(terms: &[String]) -> String {
 }
 
 /// The port of a node that lies least deep in the hierarchy.
-fn nearest(circuit: &Circuit, node: usize, cut: &BTreeSet<usize>) -> usize {
+fn nearest(circuit: &CircuitTopology, node: usize, cut: &BTreeSet<usize>) -> usize {
     let depth = |p: &usize| (cut.contains(p), circuit.ports[*p].name.matches('.').count());
     circuit.nodes[node].ports.iter().copied().min_by_key(depth).expect("a node has ports")
 }
@@ -502,7 +535,7 @@ fn unit_of(unit: &str) -> String {
 }
 
 fn factor(unit: &str) -> f64 {
-    Unit::parse(unit).map_or(1.0, |u| u.factor())
+    MeasurementUnit::parse(unit).map_or(1.0, |u| u.factor())
 }
 
 fn scaled(operator: &str, factor: f64) -> String {
@@ -518,10 +551,10 @@ fn through_of(port: usize) -> String {
     format!("gap_through_{}", port + 1)
 }
 
-fn input_declaration(circuit: &Circuit, base: &str, input: &ModelInput) -> String {
+fn input_declaration(circuit: &CircuitTopology, base: &str, input: &ModelInput) -> String {
     let ty = match input.ty {
-        Type::Integer => "Integer",
-        Type::Boolean => "Boolean",
+        ScalarType::Integer => "Integer",
+        ScalarType::Boolean => "Boolean",
         _ => "Real",
     };
     let mut sizes: Vec<usize> = Vec::new();
@@ -538,10 +571,10 @@ fn input_declaration(circuit: &Circuit, base: &str, input: &ModelInput) -> Strin
         attributes.push(format!("{each}unit = \"{}\"", input.unit));
     }
     if let Some(start) = input.start {
-        let value = if input.ty == Type::Boolean { (start != 0.0).to_string() } else { start.to_string() };
+        let value = if input.ty == ScalarType::Boolean { (start != 0.0).to_string() } else { start.to_string() };
         attributes.push(format!("{each}start = {value}"));
     }
-    if let Some(nominal) = input.nominal.filter(|_| input.ty == Type::Real) {
+    if let Some(nominal) = input.nominal.filter(|_| input.ty == ScalarType::Real) {
         attributes.push(format!("{each}nominal = {nominal:e}"));
     }
     let list = if attributes.is_empty() { String::new() } else { format!("({})", attributes.join(", ")) };

@@ -1,22 +1,22 @@
 //! What the diagnosis sees of a nominal model: components, ports with their units, nodes, inputs and parameters.
 
-use bramah_expr::eval::Evaluation;
-use bramah_expr::units::Unit;
-use bramah_expr::{ExprId, Exprs, Node as Term, VarId};
-use bramah_model::compile::{Outcome, Request, inspect};
-use bramah_model::flat::{Experiment, FlatModel, Type, Variability};
-use bramah_model::instance::{ElementState, Instance, Node, ScopeId};
+use bramah_expr::eval::EvaluationCache;
+use bramah_expr::units::MeasurementUnit;
+use bramah_expr::{ExprId, ExprNode as Term, Exprs, VarId};
+use bramah_model::compile::{CompileOutcome, Request, inspect};
+use bramah_model::flat::{ExperimentAnnotation, FlatModel, ScalarType, Variability};
+use bramah_model::instance::{ElementState, Instance, InstanceNode, ScopeId};
 use bramah_model::network::Network;
 use bramah_syntax::ast::ClassKind;
 use bramah_syntax::world::World;
 use std::collections::{BTreeMap, BTreeSet};
 
 mod links;
-pub use links::Link;
+pub use links::SignalLink;
 
 /// A variable of a port.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
+pub struct NamedQuantity {
     /// Its name inside the connector.
     pub name: String,
     /// Its unit as written.
@@ -25,18 +25,18 @@ pub struct Quantity {
 
 /// A physical port: one potential, one flow.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Port {
+pub struct PhysicalPort {
     /// Full name, as in `pump.port_a`.
     pub name: String,
     /// Full name of its connector class.
     pub class: String,
-    /// The component that owns it: index into [`Circuit::components`].
+    /// The component that owns it: index into [`CircuitTopology::components`].
     pub component: usize,
     /// The variable that is equal at joined ports.
-    pub potential: Quantity,
+    pub potential: NamedQuantity,
     /// The variable that sums up to zero.
-    pub through: Quantity,
-    /// The node it belongs to: index into [`Circuit::nodes`].
+    pub through: NamedQuantity,
+    /// The node it belongs to: index into [`CircuitTopology::nodes`].
     pub node: usize,
 }
 
@@ -63,7 +63,7 @@ pub struct NodeSet {
 
 /// A component instance; entry 0 is the model itself.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Component {
+pub struct NetworkComponent {
     /// Full name.
     pub name: String,
     /// Full name of its class.
@@ -71,9 +71,9 @@ pub struct Component {
     /// Its ports in declaration order.
     pub ports: Vec<usize>,
     /// Its Real parameters with their units.
-    pub parameters: Vec<Quantity>,
+    pub parameters: Vec<NamedQuantity>,
     /// Those of them that multiply one variable in one law, as conductances and dampings do.
-    pub factors: Vec<Quantity>,
+    pub factors: Vec<NamedQuantity>,
 }
 
 /// An input of the model.
@@ -82,7 +82,7 @@ pub struct ModelInput {
     /// Its name, with indices.
     pub name: String,
     /// Its type.
-    pub ty: Type,
+    pub ty: ScalarType,
     /// Its unit as written, empty if none.
     pub unit: String,
     /// Its start value, or the value it keeps when nothing is given.
@@ -93,15 +93,15 @@ pub struct ModelInput {
 
 /// The places of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Circuit {
+pub struct CircuitTopology {
     /// Full name of the class.
     pub class: String,
     /// The model's `experiment` annotation.
-    pub experiment: Experiment,
+    pub experiment: ExperimentAnnotation,
     /// Components, parents before children.
-    pub components: Vec<Component>,
+    pub components: Vec<NetworkComponent>,
     /// Physical ports in declaration order.
-    pub ports: Vec<Port>,
+    pub ports: Vec<PhysicalPort>,
     /// Connection sets, in the order of their first port.
     pub nodes: Vec<NodeSet>,
     /// Single connections between two ports, as pairs of port numbers, with the component in which they stand.
@@ -109,38 +109,38 @@ pub struct Circuit {
     /// Inputs of the model.
     pub inputs: Vec<ModelInput>,
     /// Signals that its components receive.
-    pub links: Vec<Link>,
+    pub links: Vec<SignalLink>,
     /// All Real variables and parameters by name, with their units.
     pub units: BTreeMap<String, String>,
 }
 
 /// Reads the places of a model.
-pub fn circuit(world: &dyn World, request: &Request) -> Outcome<Circuit> {
-    let Outcome { sources, diagnostics, value } = inspect(world, request, |instance, network, flat| {
-        let circuit = Reader::default().read(instance, network, &flat);
+pub fn circuit(world: &dyn World, request: &Request) -> CompileOutcome<CircuitTopology> {
+    let CompileOutcome { sources, diagnostics, value } = inspect(world, request, |instance, network, flat| {
+        let circuit = TopologyReader::default().read(instance, network, &flat);
         let placed = links::placed(&circuit, instance, network, &flat);
         (circuit, placed)
     });
-    let value = value.map(|(circuit, placed)| Circuit { links: links::read(placed, &sources), ..circuit });
-    Outcome { sources, diagnostics, value }
+    let value = value.map(|(circuit, placed)| CircuitTopology { links: links::read(placed, &sources), ..circuit });
+    CompileOutcome { sources, diagnostics, value }
 }
 
 #[derive(Default)]
-struct Reader {
-    circuit: Circuit,
+struct TopologyReader {
+    circuit: CircuitTopology,
     component_of: BTreeMap<u32, usize>,
     port_of: BTreeMap<u32, usize>,
 }
 
-impl Reader {
-    fn read(mut self, instance: &mut Instance<'_, '_>, network: &Network, flat: &FlatModel) -> Circuit {
+impl TopologyReader {
+    fn read(mut self, instance: &mut Instance<'_, '_>, network: &Network, flat: &FlatModel) -> CircuitTopology {
         self.circuit.class.clone_from(&flat.class);
         self.circuit.experiment = flat.experiment;
         self.components(instance);
         self.nodes(instance, network);
-        let potential = |port: &Port| format!("{}.{}", port.name, port.potential.name);
+        let potential = |port: &PhysicalPort| format!("{}.{}", port.name, port.potential.name);
         let potentials: Vec<String> = self.circuit.ports.iter().map(potential).collect();
-        let rates = Rates::of(flat, &potentials);
+        let rates = VariableRelations::of(flat, &potentials);
         for node in &mut self.circuit.nodes {
             rates.of_node(&potentials, node);
         }
@@ -148,7 +148,7 @@ impl Reader {
         self.geared(&rates);
         self.factors(flat);
         self.circuit.inputs = inputs(flat);
-        let real = flat.variables.iter().filter(|v| v.ty == Type::Real);
+        let real = flat.variables.iter().filter(|v| v.ty == ScalarType::Real);
         self.circuit.units = real.map(|v| (v.name.clone(), v.unit.as_deref().unwrap_or("").to_string())).collect();
         self.circuit
     }
@@ -163,7 +163,7 @@ impl Reader {
                 ClassKind::Model | ClassKind::Block | ClassKind::Class => {
                     self.component_of.insert(scope.0, self.circuit.components.len());
                     let parameters = parameters(instance, scope);
-                    self.circuit.components.push(Component {
+                    self.circuit.components.push(NetworkComponent {
                         name,
                         class,
                         ports: Vec::new(),
@@ -183,13 +183,13 @@ impl Reader {
         let variables = own_variables(instance, scope);
         let real = |i: &u32| {
             let v = &instance.variables[*i as usize];
-            let counts = v.ty == Type::Real && v.variability == Variability::Continuous;
+            let counts = v.ty == ScalarType::Real && v.variability == Variability::Continuous;
             counts && v.causality.is_none() && !v.stream
         };
         let (flows, potentials): (Vec<u32>, Vec<u32>) =
             variables.into_iter().filter(real).partition(|i| instance.variables[*i as usize].flow);
         let ([through], [potential]) = (&flows[..], &potentials[..]) else { return };
-        let port = Port {
+        let port = PhysicalPort {
             component,
             potential: quantity(instance, *potential),
             through: quantity(instance, *through),
@@ -204,15 +204,16 @@ impl Reader {
     }
 
     /// Finds nodes that are one: a component keeps their potentials equal and only adds up what flows in.
-    fn rigid(&mut self, rates: &Rates<'_>) {
-        let Circuit { components, ports, nodes, .. } = &mut self.circuit;
+    fn rigid(&mut self, rates: &VariableRelations<'_>) {
+        let CircuitTopology { components, ports, nodes, .. } = &mut self.circuit;
         (0..nodes.len()).for_each(|i| nodes[i].rigid = i);
-        let law = |p: &Port| rates.only_law(&format!("{}.{}", p.name, p.through.name), &components[p.component].name);
+        let law =
+            |p: &PhysicalPort| rates.only_law(&format!("{}.{}", p.name, p.through.name), &components[p.component].name);
         for c in components.iter() {
             for (i, &a) in c.ports.iter().enumerate() {
                 for &b in &c.ports[i + 1..] {
                     let (x, y) = (&ports[a], &ports[b]);
-                    let potential = |p: &Port| rates.root_of(&format!("{}.{}", p.name, p.potential.name));
+                    let potential = |p: &PhysicalPort| rates.root_of(&format!("{}.{}", p.name, p.potential.name));
                     let equal = potential(x).is_some() && potential(x) == potential(y);
                     if equal && law(x).is_some() && law(x) == law(y) {
                         let (from, to) = (nodes[x.node].rigid, nodes[y.node].rigid);
@@ -225,10 +226,10 @@ impl Reader {
     }
 
     /// Finds nodes whose potentials are bound to each other.
-    fn geared(&mut self, rates: &Rates<'_>) {
-        let Circuit { ports, nodes, .. } = &mut self.circuit;
+    fn geared(&mut self, rates: &VariableRelations<'_>) {
+        let CircuitTopology { ports, nodes, .. } = &mut self.circuit;
         (0..nodes.len()).for_each(|i| nodes[i].geared = nodes[i].rigid);
-        let root = |p: &Port| rates.root_of(&format!("{}.{}", p.name, p.potential.name));
+        let root = |p: &PhysicalPort| rates.root_of(&format!("{}.{}", p.name, p.potential.name));
         for pair in &rates.geared {
             let bound: BTreeSet<usize> = ports
                 .iter()
@@ -244,7 +245,7 @@ impl Reader {
     fn factors(&mut self, flat: &FlatModel) {
         let linear = linear_factors(flat);
         for c in &mut self.circuit.components {
-            let full = |q: &&Quantity| linear.contains(format!("{}.{}", c.name, q.name).as_str());
+            let full = |q: &&NamedQuantity| linear.contains(format!("{}.{}", c.name, q.name).as_str());
             c.factors = c.parameters.iter().filter(|q| !q.unit.is_empty()).filter(full).cloned().collect();
         }
     }
@@ -259,7 +260,7 @@ impl Reader {
         };
         for c in &network.connections {
             let port = |n| match instance.node(n) {
-                Node::Object(s) => self.port_of.get(&s.0).copied(),
+                InstanceNode::Object(s) => self.port_of.get(&s.0).copied(),
                 _ => None,
             };
             let (Some(a), Some(b)) = (port(c.a), port(c.b)) else { continue };
@@ -284,20 +285,20 @@ impl Reader {
 fn own_variables(instance: &Instance<'_, '_>, scope: ScopeId) -> Vec<u32> {
     let elements = instance.scope(scope).elements.iter();
     let nodes = elements.filter_map(|e| if let ElementState::Node(n) = e { Some(*n) } else { None });
-    nodes.filter_map(|n| if let Node::Var(i) = instance.node(n) { Some(*i) } else { None }).collect()
+    nodes.filter_map(|n| if let InstanceNode::Var(i) = instance.node(n) { Some(*i) } else { None }).collect()
 }
 
-fn quantity(instance: &mut Instance<'_, '_>, variable: u32) -> Quantity {
+fn quantity(instance: &mut Instance<'_, '_>, variable: u32) -> NamedQuantity {
     let full = &instance.variables[variable as usize].name;
     let name = full.rsplit('.').next().unwrap_or(full).to_string();
-    Quantity { name, unit: instance.parameters().text_attribute(variable, "unit").unwrap_or_default() }
+    NamedQuantity { name, unit: instance.parameters().text_attribute(variable, "unit").unwrap_or_default() }
 }
 
-fn parameters(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<Quantity> {
+fn parameters(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<NamedQuantity> {
     let mut all = own_variables(instance, scope);
     all.retain(|i| {
         let v = &instance.variables[*i as usize];
-        v.ty == Type::Real && !v.hidden && v.variability == Variability::Parameter
+        v.ty == ScalarType::Real && !v.hidden && v.variability == Variability::Parameter
     });
     all.into_iter().map(|i| quantity(instance, i)).collect()
 }
@@ -317,7 +318,7 @@ fn inputs(flat: &FlatModel) -> Vec<ModelInput> {
 }
 
 /// Which variables are equal, which have a derivative in the model, and which are given by parameters alone.
-struct Rates<'a> {
+struct VariableRelations<'a> {
     flat: &'a FlatModel,
     root: Vec<u32>,
     differentiated: BTreeSet<u32>,
@@ -332,7 +333,7 @@ struct Rates<'a> {
     index: BTreeMap<&'a str, u32>,
 }
 
-impl<'a> Rates<'a> {
+impl<'a> VariableRelations<'a> {
     fn of(flat: &'a FlatModel, potentials: &[String]) -> Self {
         let count = u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables");
         let index = (0u32..).zip(&flat.variables).map(|(i, v)| (v.name.as_str(), i)).collect();
@@ -340,7 +341,8 @@ impl<'a> Rates<'a> {
         let none = BTreeSet::new;
         let (differentiated, accelerated, steady, fixed, driven) = (none(), none(), none(), none(), none());
         let geared = Vec::new();
-        let mut rates = Rates { flat, root, differentiated, accelerated, steady, fixed, driven, geared, index };
+        let mut rates =
+            VariableRelations { flat, root, differentiated, accelerated, steady, fixed, driven, geared, index };
         rates.unite();
         for e in &flat.equations {
             for side in [e.lhs, e.rhs] {
@@ -368,7 +370,7 @@ impl<'a> Rates<'a> {
     }
 
     /// The two potentials that an equation binds to each other whatever flows, as an ideal gear does.
-    fn bound(&self, e: &bramah_model::flat::Equation, potentials: &BTreeSet<u32>) -> Option<BTreeSet<u32>> {
+    fn bound(&self, e: &bramah_model::flat::FlatEquation, potentials: &BTreeSet<u32>) -> Option<BTreeSet<u32>> {
         let leaves = self.flat.exprs.dependencies(&[e.lhs, e.rhs]);
         let moving = |v: &&VarId| self.flat.variables[v.index()].variability > Variability::Parameter;
         let roots: BTreeSet<u32> = leaves.vars.iter().filter(moving).map(|v| self.find(v.0)).collect();
@@ -444,8 +446,9 @@ impl<'a> Rates<'a> {
         let variable = VarId(*self.index.get(through)?);
         let instance = self.flat.instances.iter().position(|i| i.name == component)?;
         let mut all = (0..).zip(&self.flat.equations).filter(|(_, e)| e.origin.instance as usize == instance);
-        let holds =
-            |e: &bramah_model::flat::Equation| self.flat.exprs.dependencies(&[e.lhs, e.rhs]).vars.contains(&variable);
+        let holds = |e: &bramah_model::flat::FlatEquation| {
+            self.flat.exprs.dependencies(&[e.lhs, e.rhs]).vars.contains(&variable)
+        };
         let first = all.by_ref().find(|(_, e)| holds(e))?.0;
         all.all(|(_, e)| !holds(e)).then_some(first)
     }
@@ -561,7 +564,7 @@ fn known(flat: &FlatModel) -> BTreeMap<VarId, f64> {
 /// The value of an expression if what is known is enough for it.
 fn steady_value(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId) -> Option<f64> {
     let mut enough = true;
-    let value = Evaluation::default().value(exprs, e, &mut |leaf| match leaf {
+    let value = EvaluationCache::default().value(exprs, e, &mut |leaf| match leaf {
         Term::Var(v) if known.contains_key(&v) => known[&v],
         _ => {
             enough = false;
@@ -573,15 +576,15 @@ fn steady_value(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId) -> Optio
 
 /// The value of an expression with what is known at its value, and other variables as given.
 fn value_at(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId, moving: &mut dyn FnMut(VarId) -> f64) -> f64 {
-    Evaluation::default().value(exprs, e, &mut |leaf| match leaf {
+    EvaluationCache::default().value(exprs, e, &mut |leaf| match leaf {
         Term::Var(v) => known.get(&v).copied().unwrap_or_else(|| moving(v)),
         _ => 0.0,
     })
 }
 
-impl Circuit {
+impl CircuitTopology {
     /// The signal inside the model that a component receives by this name.
-    pub fn link(&self, name: &str) -> Option<&Link> {
+    pub fn link(&self, name: &str) -> Option<&SignalLink> {
         self.links.iter().find(|l| l.signal.name == name)
     }
 
@@ -604,7 +607,7 @@ impl Circuit {
 
 /// Whether two units measure the same, angle included; scales may differ.
 pub fn same_kind(a: &str, b: &str) -> bool {
-    match (Unit::parse(a), Unit::parse(b)) {
+    match (MeasurementUnit::parse(a), MeasurementUnit::parse(b)) {
         (Ok(x), Ok(y)) => x.dimension == y.dimension && x.angle == y.angle && a.is_empty() == b.is_empty(),
         _ => false,
     }

@@ -22,10 +22,10 @@ impl fmt::Debug for Budget<'_> {
 
 /// When a search, or a step of it, must come to an end; never where there is no budget.
 #[derive(Clone, Copy, Default)]
-pub struct Deadline<'a>(Option<Due<'a>>);
+pub struct Deadline<'a>(Option<DeadlineClock<'a>>);
 
 #[derive(Clone, Copy)]
-struct Due<'a> {
+struct DeadlineClock<'a> {
     time: Duration,
     gone: &'a (dyn Fn() -> Duration + Sync),
 }
@@ -45,16 +45,16 @@ impl<'a> Deadline<'a> {
                 run();
                 (gone().saturating_sub(begun) * RUNS).max(Duration::from_secs_f64(BUDGET))
             };
-            Due { time: time.unwrap_or_else(usual), gone }
+            DeadlineClock { time: time.unwrap_or_else(usual), gone }
         };
         Deadline(budget.map(due))
     }
 
     /// That of one step: a part of what is left.
     pub fn of_step(self) -> Self {
-        let step = |due: Due<'a>| {
+        let step = |due: DeadlineClock<'a>| {
             let now = (due.gone)();
-            Due { time: now + due.time.saturating_sub(now).mul_f64(SHARE), ..due }
+            DeadlineClock { time: now + due.time.saturating_sub(now).mul_f64(SHARE), ..due }
         };
         Deadline(self.0.map(step))
     }

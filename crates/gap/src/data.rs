@@ -9,7 +9,7 @@ const ENOUGH: (usize, f64) = (20, 0.2);
 
 /// One recording in SI units.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Recording {
+pub struct RecordingData {
     /// Times of the samples in seconds, growing.
     pub times: Arc<[f64]>,
     /// Per input of the model its samples; complete.
@@ -20,7 +20,7 @@ pub struct Recording {
     pub signals: Vec<Arc<[f64]>>,
 }
 
-impl Recording {
+impl RecordingData {
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.times.len()
@@ -57,24 +57,24 @@ impl Recording {
 
 /// Inputs of the interval after a sample.
 #[derive(Clone, Debug)]
-pub struct Inputs {
+pub struct InputSegment {
     /// At the sample.
     pub from: Vec<f64>,
     /// How fast they change, per second; held ones do not.
     pub slope: Vec<f64>,
 }
 
-impl Inputs {
+impl InputSegment {
     /// Those of the first interval.
-    pub fn new(recording: &Recording) -> Self {
+    pub fn new(recording: &RecordingData) -> Self {
         let count = recording.inputs.len();
-        let mut inputs = Inputs { from: vec![0.0; count], slope: vec![0.0; count] };
+        let mut inputs = InputSegment { from: vec![0.0; count], slope: vec![0.0; count] };
         inputs.enter(recording, 0);
         inputs
     }
 
     /// Goes to the interval after sample `k`.
-    pub fn enter(&mut self, recording: &Recording, k: usize) {
+    pub fn enter(&mut self, recording: &RecordingData, k: usize) {
         recording.input(k, &mut self.from);
         let next = (k + 1).min(recording.len() - 1);
         let h = recording.times[next] - recording.times[k];

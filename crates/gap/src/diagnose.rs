@@ -2,16 +2,16 @@
 
 use super::clock::Budget;
 use super::fixed;
-use super::hypotheses::{Hypothesis, Place};
+use super::hypotheses::{Hypothesis, NetworkLocation};
 use super::report;
 use super::select::models;
-use super::select::search::{Found, Progress, Stage, Trouble, explained, search};
-use super::study::{Held, Question, Unusable, question};
+use super::select::search::{DiagnosisError, DiagnosisProgress, EffectSearchResult, Stage, explained, search};
+use super::study::{DiagnosisStudy, HoldoutData, StudyError, question};
 use super::verdict::{Verdict, conclude};
 use super::words;
 use bramah_analysis::study::Study;
 use bramah_plot::Figure;
-use bramah_syntax::diag::{Checked, Code, Diagnostic, Error, Sources};
+use bramah_syntax::diag::{Code, Diagnostic, Error, Sources, StageResult};
 use bramah_syntax::world::World;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -19,9 +19,9 @@ use std::sync::Arc;
 
 /// What a diagnosis came to.
 pub struct Diagnosis<'a> {
-    question: Question<'a>,
-    held: Held,
-    found: Found,
+    question: DiagnosisStudy<'a>,
+    held: HoldoutData,
+    found: EffectSearchResult,
     verdict: Verdict,
 }
 
@@ -67,7 +67,7 @@ pub fn diagnose_as<'a>(
     world: &'a dyn World,
     study: &Path,
     options: DiagnoseOptions<'_>,
-    progress: Progress<'_>,
+    progress: DiagnosisProgress<'_>,
 ) -> Result<(Diagnosis<'a>, Sources), Error> {
     let data = options.data;
     let mut sources = Sources::default();
@@ -76,7 +76,7 @@ pub fn diagnose_as<'a>(
     let Some(study) = read.value else { return Err(failed(read.diagnostics, sources)) };
     let asked = match question(world, &study, data, &mut sources) {
         Ok(asked) => asked,
-        Err(Unusable { diagnostics, sources: of_model, .. }) => {
+        Err(StudyError { diagnostics, sources: of_model, .. }) => {
             return Err(failed(diagnostics, of_model.unwrap_or(sources)));
         }
     };
@@ -96,10 +96,10 @@ impl<'a> Diagnosis<'a> {
     /// # Errors
     /// The nominal model does not compile or cannot follow a recording, there is no such effect, or `progress` stopped it.
     pub fn new(
-        question: Question<'a>,
-        held: Held,
+        question: DiagnosisStudy<'a>,
+        held: HoldoutData,
         options: DiagnoseOptions<'_>,
-        progress: Progress<'_>,
+        progress: DiagnosisProgress<'_>,
     ) -> Result<Self, Vec<Diagnostic>> {
         let problem = &question.problem;
         let found = match options.effect {
@@ -137,7 +137,7 @@ impl<'a> Diagnosis<'a> {
     }
 
     /// The corrected model, class `Fixed`, with every class it needs, as Modelica text.
-    pub fn corrected(&self) -> Checked<String> {
+    pub fn corrected(&self) -> StageResult<String> {
         fixed::corrected(&self.question.problem, &self.found.last.fit)
     }
 
@@ -147,7 +147,7 @@ impl<'a> Diagnosis<'a> {
     }
 }
 
-impl Question<'_> {
+impl DiagnosisStudy<'_> {
     /// The nominal model and the recordings used, signal by signal: the model is simulated from the inputs alone, after
     /// its initial state was fitted to the first samples.
     ///
@@ -155,7 +155,7 @@ impl Question<'_> {
     /// The nominal model does not compile, or cannot follow a recording.
     pub fn compared(&self) -> Result<Figure, Vec<Diagnostic>> {
         let nominal = models::nominal(&self.problem)?;
-        report::compared(&self.problem, &nominal).map_err(|(file, time)| said(Trouble::Stops(file, time)))
+        report::compared(&self.problem, &nominal).map_err(|(file, time)| said(DiagnosisError::Stops(file, time)))
     }
 }
 
@@ -164,7 +164,7 @@ fn at(all: &[Hypothesis], asked: &str) -> Result<usize, Vec<Diagnostic>> {
     let is_asked = |h: &Hypothesis| {
         let (effect, place) = asked.split_once('@').unwrap_or((asked, ""));
         let of_effect = h.effect == effect || h.effect.strip_prefix("Effects.") == Some(effect);
-        let here = |p: &&Place| p.place == place || p.node.iter().any(|n| n == place);
+        let here = |p: &&NetworkLocation| p.place == place || p.node.iter().any(|n| n == place);
         of_effect && !h.is_recording_error() && h.places().iter().any(here)
     };
     all.iter().position(is_asked).ok_or_else(|| {
@@ -177,15 +177,15 @@ fn at(all: &[Hypothesis], asked: &str) -> Result<usize, Vec<Diagnostic>> {
 }
 
 /// What stops a diagnosis: the nominal model does not compile, or cannot follow the recordings.
-fn said(trouble: Trouble) -> Vec<Diagnostic> {
+fn said(trouble: DiagnosisError) -> Vec<Diagnostic> {
     match trouble {
-        Trouble::Model(diagnostics) => diagnostics,
-        Trouble::Stops(file, time) => {
+        DiagnosisError::Model(diagnostics) => diagnostics,
+        DiagnosisError::Stops(file, time) => {
             let text = format!("the nominal model cannot follow `{file}`: its simulation stops at {time} s");
             let help = "check the units and signs of the inputs in the study, and the model's start values";
             vec![Diagnostic::new(Code::BadData, text).help(help)]
         }
-        Trouble::Stopped => vec![Diagnostic::new(Code::Interrupted, "the diagnosis was stopped")],
+        DiagnosisError::Stopped => vec![Diagnostic::new(Code::Interrupted, "the diagnosis was stopped")],
     }
 }
 

@@ -1,11 +1,13 @@
 //! The catalogue of effects: read from the shipped models and from a folder of the study.
 
-use super::circuit::Quantity;
-use bramah_expr::{ExprId, Node};
-use bramah_model::compile::{Outcome, Request, flatten};
-use bramah_model::flat::{FlatModel, Variable};
-use bramah_model::shipped::Shipped;
-use bramah_syntax::ast::{self, Argument, ArgumentKind, ClassBody, ElementKind, Expr, ExprKind, Modification};
+use super::circuit::NamedQuantity;
+use bramah_expr::{ExprId, ExprNode};
+use bramah_model::compile::{CompileOutcome, Request, flatten};
+use bramah_model::flat::{FlatModel, FlatVariable};
+use bramah_model::shipped::ShippedWorld;
+use bramah_syntax::ast::{
+    self, ClassBody, ElementKind, Expr, ExprKind, Modification, ModificationArgument, ModificationArgumentKind,
+};
 use bramah_syntax::diag::{Code, Diagnostic, FileId};
 use bramah_syntax::world::{MemoryWorld, Overlay, World};
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,7 +16,7 @@ use std::sync::Arc;
 
 /// Where an effect goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Attach {
+pub enum AttachmentKind {
     /// To one node.
     Shunt,
     /// Across two ports of a component.
@@ -33,17 +35,17 @@ pub enum Attach {
 
 /// How an effect attaches, from the annotation of the interface it extends.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Interface {
+pub struct EffectInterface {
     /// Where it goes.
-    pub attach: Attach,
+    pub attach: AttachmentKind,
     /// Potentials that it reads, of the ports it is attached to.
-    pub potential: Vec<Quantity>,
+    pub potential: Vec<NamedQuantity>,
     /// The through variable that it gives (a Series element gets it); none for signals.
-    pub through: Option<Quantity>,
+    pub through: Option<NamedQuantity>,
     /// The difference of potentials that a Series element gives.
-    pub drop: Option<Quantity>,
+    pub drop: Option<NamedQuantity>,
     /// Potentials of further ports of the same component.
-    pub sense: Vec<Quantity>,
+    pub sense: Vec<NamedQuantity>,
     /// They may belong to any port of the network.
     pub anywhere: bool,
     /// A temperature that it reads, in kelvin.
@@ -52,7 +54,7 @@ pub struct Interface {
 
 /// A parameter in which the effect is linear near its off value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Coefficient {
+pub struct EffectCoefficient {
     /// Its name in the effect model.
     pub name: String,
     /// Its unit; empty means that of the signal, or none.
@@ -73,7 +75,7 @@ pub struct Coefficient {
     pub recording: Option<usize>,
 }
 
-impl Coefficient {
+impl EffectCoefficient {
     /// Its name among those of a hypothesis.
     pub fn label(&self) -> String {
         self.recording.map_or_else(|| self.name.clone(), |k| format!("{}_{}", self.name, k + 1))
@@ -87,7 +89,7 @@ impl Coefficient {
 
 /// A parameter that enters nonlinearly.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shape {
+pub struct ShapeParameter {
     /// Its name in the effect model.
     pub name: String,
     /// Its unit.
@@ -118,7 +120,7 @@ pub struct Shape {
 
 /// Parameters that take the range of a potential, or of what flows through a Series element.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Range {
+pub struct RangeParameters {
     /// The potential or through variable, by its name in the effect.
     pub of: String,
     /// It is the size of the potential's rate whose range is taken.
@@ -131,7 +133,7 @@ pub struct Range {
 
 /// One effect model.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Effect {
+pub struct EffectModel {
     /// Full name of its class.
     pub class: String,
     /// Its family, of the closed list.
@@ -141,15 +143,15 @@ pub struct Effect {
     /// What it does, in words.
     pub description: String,
     /// Where it goes.
-    pub interface: Interface,
+    pub interface: EffectInterface,
     /// Linear parameters.
-    pub coefficients: Vec<Coefficient>,
+    pub coefficients: Vec<EffectCoefficient>,
     /// Nonlinear parameters.
-    pub shapes: Vec<Shape>,
+    pub shapes: Vec<ShapeParameter>,
     /// Parameters that take the value of the component's parameter of equal unit.
-    pub base: Vec<Quantity>,
+    pub base: Vec<NamedQuantity>,
     /// A potential that it reads, or its rate, with the two parameters that take the least and the greatest value that occurs.
-    pub range: Option<Range>,
+    pub range: Option<RangeParameters>,
     /// A parameter that is the pressure of the surroundings: nothing where the model counts pressures from there.
     pub surroundings: Option<String>,
     /// Effects of one group are also tried together, with one set of coefficients.
@@ -163,7 +165,7 @@ pub struct Effect {
     /// An effect on a command that also fits what a sensor shows.
     pub measured: bool,
     /// Not tried where an effect of this kind fits.
-    pub without: Option<Attach>,
+    pub without: Option<AttachmentKind>,
     /// States of its own; inside a connection the order of the system changes with them.
     pub states: usize,
     /// It reads the rate of a potential.
@@ -177,7 +179,7 @@ const DISTURBANCE: &str = "disturbance";
 /// The family of shapes: they compete with the effects, and where one of them wins, nothing known explains the gap.
 const SHAPE: &str = "shape";
 
-impl Effect {
+impl EffectModel {
     /// Whether it only says what shape a gap has that no effect explains.
     pub fn is_shape(&self) -> bool {
         self.family == SHAPE
@@ -186,27 +188,27 @@ impl Effect {
 
 /// What may be missing, in the order of the packages: what is usual on machines comes first.
 #[derive(Clone, Debug)]
-pub struct Catalogue {
+pub struct EffectCatalogue {
     /// Explanations.
-    pub effects: Vec<Arc<Effect>>,
+    pub effects: Vec<Arc<EffectModel>>,
     /// The shipped sources without form, one for each kind of place.
-    pub disturbances: Vec<Arc<Effect>>,
+    pub disturbances: Vec<Arc<EffectModel>>,
 }
 
 /// Reads the shipped effects and those of a folder.
-pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> Outcome<Catalogue> {
-    let Outcome { sources, diagnostics, value } = everything(world, folder);
-    let parted = |all: Vec<Arc<Effect>>| {
+pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> CompileOutcome<EffectCatalogue> {
+    let CompileOutcome { sources, diagnostics, value } = everything(world, folder);
+    let parted = |all: Vec<Arc<EffectModel>>| {
         let (mut disturbances, effects): (Vec<_>, Vec<_>) = all.into_iter().partition(|e| e.family == DISTURBANCE);
         disturbances.retain(|d| d.class.starts_with("Effects."));
-        Catalogue { effects, disturbances }
+        EffectCatalogue { effects, disturbances }
     };
-    Outcome { sources, diagnostics, value: value.map(parted) }
+    CompileOutcome { sources, diagnostics, value: value.map(parted) }
 }
 
-fn everything(world: &dyn World, folder: Option<&Path>) -> Outcome<Vec<Arc<Effect>>> {
-    let mut reader = Reader::default();
-    reader.folder(&Shipped, Path::new("components/Effects"), "Effects");
+fn everything(world: &dyn World, folder: Option<&Path>) -> CompileOutcome<Vec<Arc<EffectModel>>> {
+    let mut reader = CatalogueReader::default();
+    reader.folder(&ShippedWorld, Path::new("components/Effects"), "Effects");
     if let Some(folder) = folder {
         let package = world.read(&folder.join("package.mo")).is_ok();
         let prefix = folder.file_name().filter(|_| package).map(|n| n.to_string_lossy().into_owned());
@@ -216,7 +218,7 @@ fn everything(world: &dyn World, folder: Option<&Path>) -> Outcome<Vec<Arc<Effec
 }
 
 /// A class found in the folders, with its annotation.
-struct Found {
+struct EffectClass {
     class: String,
     description: String,
     partial: bool,
@@ -225,14 +227,14 @@ struct Found {
 }
 
 #[derive(Default)]
-struct Reader {
-    classes: BTreeMap<String, Found>,
+struct CatalogueReader {
+    classes: BTreeMap<String, EffectClass>,
     /// Their names as they were read.
     order: Vec<String>,
     diagnostics: Vec<Diagnostic>,
 }
 
-impl Reader {
+impl CatalogueReader {
     fn folder(&mut self, world: &dyn World, path: &Path, prefix: &str) {
         for (name, is_folder) in in_order(world, path) {
             let inner = path.join(&name);
@@ -259,7 +261,7 @@ impl Reader {
             _ => None,
         });
         let own = vendor(class.annotation.as_ref()).cloned().unwrap_or_default();
-        let found = Found {
+        let found = EffectClass {
             class: full.clone(),
             description: class.description.as_deref().unwrap_or("").to_string(),
             partial: class.prefixes.partial,
@@ -271,14 +273,14 @@ impl Reader {
     }
 
     /// The interface that a class extends, near or far.
-    fn interface<'a>(&'a self, class: &'a Found) -> Option<&'a Found> {
+    fn interface<'a>(&'a self, class: &'a EffectClass) -> Option<&'a EffectClass> {
         if argument(&class.annotation, "attach").is_some() {
             return Some(class);
         }
         class.extends.iter().find_map(|base| self.interface(self.resolve(&class.class, base)?))
     }
 
-    fn resolve(&self, from: &str, name: &str) -> Option<&Found> {
+    fn resolve(&self, from: &str, name: &str) -> Option<&EffectClass> {
         let mut around = from;
         while let Some((outer, _)) = around.rsplit_once('.') {
             if let Some(found) = self.classes.get(&format!("{outer}.{name}")) {
@@ -289,8 +291,8 @@ impl Reader {
         self.classes.get(name)
     }
 
-    fn finish(mut self, world: &dyn World, folder: Option<&Path>) -> Outcome<Vec<Arc<Effect>>> {
-        let wanted: Vec<(&Found, &Found)> = self
+    fn finish(mut self, world: &dyn World, folder: Option<&Path>) -> CompileOutcome<Vec<Arc<EffectModel>>> {
+        let wanted: Vec<(&EffectClass, &EffectClass)> = self
             .order
             .iter()
             .filter_map(|name| self.classes.get(name))
@@ -298,9 +300,9 @@ impl Reader {
             .filter_map(|f| Some((f, self.interface(f)?)))
             .collect();
         let names: Vec<&str> = wanted.iter().map(|(f, _)| f.class.as_str()).collect();
-        let Outcome { sources, diagnostics, value } = flatten_all(world, folder, &names);
-        let Some(flat) = value else { return Outcome { sources, diagnostics, value: None } };
-        let read = Attributes::of(&flat);
+        let CompileOutcome { sources, diagnostics, value } = flatten_all(world, folder, &names);
+        let Some(flat) = value else { return CompileOutcome { sources, diagnostics, value: None } };
+        let read = EffectAttributes::of(&flat);
         let mut effects = Vec::new();
         let mut bad = Vec::new();
         for (number, (found, interface)) in wanted.iter().enumerate() {
@@ -310,7 +312,7 @@ impl Reader {
             }
         }
         self.diagnostics.extend(bad);
-        Outcome { sources, diagnostics: self.diagnostics, value: Some(effects) }
+        CompileOutcome { sources, diagnostics: self.diagnostics, value: Some(effects) }
     }
 }
 
@@ -333,7 +335,7 @@ fn unusable(class: &str, why: &str) -> Diagnostic {
 }
 
 /// One model that holds every effect once, named `e0`, `e1`, ...
-fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> Outcome<FlatModel> {
+fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> CompileOutcome<FlatModel> {
     let mut text = String::from("model Catalogue\n");
     for (i, name) in names.iter().enumerate() {
         text.push_str(&format!("  {name} e{i};\n"));
@@ -343,8 +345,8 @@ fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> Outc
     let overlay = Overlay { base: world, files: MemoryWorld::single(&source, text) };
     let mut request = Request { source, model: Some("Catalogue".into()), varied: true, ..Request::default() };
     own_classes(world, folder, &mut request);
-    let Outcome { sources, diagnostics, value } = flatten(&overlay, &request);
-    Outcome { sources, diagnostics, value: value.map(|f| f.flat) }
+    let CompileOutcome { sources, diagnostics, value } = flatten(&overlay, &request);
+    CompileOutcome { sources, diagnostics, value: value.map(|f| f.flat) }
 }
 
 /// Makes the classes of the user's folder known.
@@ -358,16 +360,16 @@ pub fn own_classes(world: &dyn World, folder: Option<&Path>, request: &mut Reque
 }
 
 /// What the flat catalogue says about the variables and equations of each effect.
-struct Attributes<'a> {
+struct EffectAttributes<'a> {
     flat: &'a FlatModel,
-    index: BTreeMap<&'a str, &'a Variable>,
+    index: BTreeMap<&'a str, &'a FlatVariable>,
     /// Names of variables whose derivative occurs.
     differentiated: BTreeSet<String>,
     /// Variables that are the derivative of another.
     rate_of: BTreeMap<String, String>,
 }
 
-impl<'a> Attributes<'a> {
+impl<'a> EffectAttributes<'a> {
     fn of(flat: &'a FlatModel) -> Self {
         let name = |v: bramah_expr::VarId| flat.variables[v.index()].name.clone();
         let mut differentiated = BTreeSet::new();
@@ -377,22 +379,22 @@ impl<'a> Attributes<'a> {
                 differentiated.extend(flat.exprs.derivatives(side).into_iter().map(name));
             }
             for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
-                if let (Node::Var(v), Node::Der(x)) = (flat.exprs.node(one), flat.exprs.node(other)) {
+                if let (ExprNode::Var(v), ExprNode::Der(x)) = (flat.exprs.node(one), flat.exprs.node(other)) {
                     rate_of.insert(name(v), name(x));
                 }
             }
         }
         let index = flat.variables.iter().map(|v| (v.name.as_str(), v)).collect();
-        Attributes { flat, index, differentiated, rate_of }
+        EffectAttributes { flat, index, differentiated, rate_of }
     }
 
-    fn variable(&self, number: usize, name: &str) -> Result<&'a Variable, String> {
+    fn variable(&self, number: usize, name: &str) -> Result<&'a FlatVariable, String> {
         self.index.get(format!("e{number}.{name}").as_str()).copied().ok_or_else(|| format!("it has no `{name}`"))
     }
 
-    fn quantity(&self, number: usize, name: &str) -> Result<Quantity, String> {
+    fn quantity(&self, number: usize, name: &str) -> Result<NamedQuantity, String> {
         let unit = self.variable(number, name)?.unit.as_deref().unwrap_or("").to_string();
-        Ok(Quantity { name: name.to_string(), unit })
+        Ok(NamedQuantity { name: name.to_string(), unit })
     }
 
     fn number(&self, e: Option<ExprId>) -> Option<f64> {
@@ -400,11 +402,16 @@ impl<'a> Attributes<'a> {
     }
 }
 
-fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize) -> Result<Effect, String> {
+fn effect(
+    found: &EffectClass,
+    interface: &EffectClass,
+    read: &EffectAttributes<'_>,
+    number: usize,
+) -> Result<EffectModel, String> {
     let own = &found.annotation;
     let interface = interface_of(&interface.annotation, own, read, number)?;
     let relative: BTreeSet<String> = texts(own, "relative").into_iter().collect();
-    let mut effect = Effect {
+    let mut effect = EffectModel {
         class: found.class.clone(),
         family: text(own, "family").unwrap_or_default(),
         id: text(own, "id").unwrap_or_default(),
@@ -429,21 +436,26 @@ fn effect(found: &Found, interface: &Found, read: &Attributes<'_>, number: usize
     Ok(effect)
 }
 
-fn range(own: &Modification, read: &Attributes<'_>, number: usize) -> Result<Option<Range>, String> {
+fn range(own: &Modification, read: &EffectAttributes<'_>, number: usize) -> Result<Option<RangeParameters>, String> {
     let mut names = texts(own, "range").into_iter();
     match (names.next(), names.next(), names.next(), names.next()) {
         (None, ..) => Ok(None),
         (Some(of), Some(least), Some(most), None) => {
             let prefix = format!("e{number}.");
             let potential = read.rate_of.get(&format!("{prefix}{of}")).and_then(|x| x.strip_prefix(&prefix));
-            Ok(Some(Range { rate: potential.is_some(), of: potential.unwrap_or(&of).to_string(), least, most }))
+            Ok(Some(RangeParameters {
+                rate: potential.is_some(),
+                of: potential.unwrap_or(&of).to_string(),
+                least,
+                most,
+            }))
         }
         _ => Err("`range` is not a potential or its rate and the two parameters that take its range".into()),
     }
 }
 
 /// Finds out which derivatives an effect uses.
-fn rates(effect: &mut Effect, read: &Attributes<'_>, number: usize) {
+fn rates(effect: &mut EffectModel, read: &EffectAttributes<'_>, number: usize) {
     let prefix = format!("e{number}.");
     let potentials: BTreeSet<String> = effect
         .interface
@@ -466,13 +478,13 @@ fn rates(effect: &mut Effect, read: &Attributes<'_>, number: usize) {
 fn interface_of(
     base: &Modification,
     own: &Modification,
-    read: &Attributes<'_>,
+    read: &EffectAttributes<'_>,
     number: usize,
-) -> Result<Interface, String> {
+) -> Result<EffectInterface, String> {
     let name = text(base, "attach").unwrap_or_default();
     let attach = attach(&name).ok_or_else(|| format!("`attach = \"{name}\"` is not known"))?;
     let all = |key: &str| texts(base, key).iter().map(|n| read.quantity(number, n)).collect::<Result<Vec<_>, _>>();
-    Ok(Interface {
+    Ok(EffectInterface {
         attach,
         potential: all("potential")?,
         through: text(base, "through").map(|n| read.quantity(number, &n)).transpose()?,
@@ -483,24 +495,24 @@ fn interface_of(
     })
 }
 
-fn attach(name: &str) -> Option<Attach> {
+fn attach(name: &str) -> Option<AttachmentKind> {
     Some(match name {
-        "Shunt" => Attach::Shunt,
-        "Bridge" => Attach::Bridge,
-        "Drain" => Attach::Drain,
-        "Series" => Attach::Series,
-        "Sensor" => Attach::Sensor,
-        "Command" => Attach::Command,
+        "Shunt" => AttachmentKind::Shunt,
+        "Bridge" => AttachmentKind::Bridge,
+        "Drain" => AttachmentKind::Drain,
+        "Series" => AttachmentKind::Series,
+        "Sensor" => AttachmentKind::Sensor,
+        "Command" => AttachmentKind::Command,
         _ => return None,
     })
 }
 
 fn coefficients(
     own: &Modification,
-    read: &Attributes<'_>,
+    read: &EffectAttributes<'_>,
     number: usize,
     relative: &BTreeSet<String>,
-) -> Result<Vec<Coefficient>, String> {
+) -> Result<Vec<EffectCoefficient>, String> {
     let names = texts(own, "coefficients");
     if names.is_empty() {
         return Err("it names no `coefficients`".into());
@@ -509,7 +521,7 @@ fn coefficients(
         let v = read.variable(number, &name)?;
         let off = read.number(v.binding).unwrap_or(0.0);
         let nominal = read.number(v.nominal).ok_or_else(|| format!("`{name}` has no `nominal`"))?;
-        Ok(Coefficient {
+        Ok(EffectCoefficient {
             unit: v.unit.as_deref().unwrap_or("").to_string(),
             off,
             min: read.number(v.min),
@@ -526,15 +538,17 @@ fn coefficients(
 
 fn shapes(
     own: &Modification,
-    read: &Attributes<'_>,
+    read: &EffectAttributes<'_>,
     number: usize,
     relative: &BTreeSet<String>,
-) -> Result<Vec<Shape>, String> {
-    let Some(ArgumentKind::Modify { modification: Some(list), .. }) = argument(own, "shapes").map(|a| &a.kind) else {
+) -> Result<Vec<ShapeParameter>, String> {
+    let Some(ModificationArgumentKind::Modify { modification: Some(list), .. }) =
+        argument(own, "shapes").map(|a| &a.kind)
+    else {
         return Ok(Vec::new());
     };
-    let one = |a: &Argument| {
-        let ArgumentKind::Modify { path, modification: Some(m), .. } = &a.kind else {
+    let one = |a: &ModificationArgument| {
+        let ModificationArgumentKind::Modify { path, modification: Some(m), .. } = &a.kind else {
             return Err("`shapes` holds something other than `name = {values}`".to_string());
         };
         let name = path.dotted();
@@ -552,7 +566,7 @@ fn shapes(
         let (line, order) = (listed("line"), listed("order"));
         let relative = relative.contains(&name);
         let unit = unit.to_string();
-        Ok(Shape { unit, grid, min, max, occurs: None, relative, threshold, level, limit, line, order, name })
+        Ok(ShapeParameter { unit, grid, min, max, occurs: None, relative, threshold, level, limit, line, order, name })
     };
     list.arguments.iter().map(one).collect()
 }
@@ -560,21 +574,21 @@ fn shapes(
 /// What stands in `__bramah(...)`.
 fn vendor(annotation: Option<&Modification>) -> Option<&Modification> {
     match &argument(annotation?, "__bramah")?.kind {
-        ArgumentKind::Modify { modification, .. } => modification.as_ref(),
+        ModificationArgumentKind::Modify { modification, .. } => modification.as_ref(),
         _ => None,
     }
 }
 
-fn argument<'a>(modification: &'a Modification, name: &str) -> Option<&'a Argument> {
+fn argument<'a>(modification: &'a Modification, name: &str) -> Option<&'a ModificationArgument> {
     modification.arguments.iter().find(|a| match &a.kind {
-        ArgumentKind::Modify { path, .. } => path.parts.len() == 1 && path.parts[0].name == name,
+        ModificationArgumentKind::Modify { path, .. } => path.parts.len() == 1 && path.parts[0].name == name,
         _ => false,
     })
 }
 
 fn value<'a>(modification: &'a Modification, name: &str) -> Option<&'a Expr> {
     match &argument(modification, name)?.kind {
-        ArgumentKind::Modify { modification: Some(m), .. } => m.value.as_ref(),
+        ModificationArgumentKind::Modify { modification: Some(m), .. } => m.value.as_ref(),
         _ => None,
     }
 }

@@ -1,10 +1,10 @@
 //! How large the gap is, as it is: root mean squares of measured minus simulated. Nothing is subtracted from them.
 
-use super::data::Recording;
-use super::estimate::candidate::Errors;
-use super::hypotheses::Signal;
-use super::problem::Problem;
-use super::verdict::{Columns, Maybe, OpenGap, Side, SignalGap};
+use super::data::RecordingData;
+use super::estimate::candidate::RecordingResiduals;
+use super::hypotheses::SensorSignal;
+use super::problem::DiagnosisProblem;
+use super::verdict::{ModelGaps, OpenGap, OptionalNumber, RoleGaps, SignalGap};
 use std::collections::BTreeMap;
 
 /// A gap within so many standard deviations of the sensor's noise is closed: hardly any sample of a model without fault
@@ -14,23 +14,23 @@ const CLOSED_NOISE: f64 = 3.0;
 const CLOSED_RANGE: f64 = 2.5e-3;
 
 /// What one model leaves of each recording.
-pub struct Left {
+pub struct GapFigures {
     /// Per recording and signal the sum of squares and the number of samples, SI; `None` where the run stops early.
     recordings: Vec<Option<Vec<(f64, f64)>>>,
 }
 
-impl Left {
+impl GapFigures {
     /// From the errors of a model behind the beginning, a recording each.
-    pub fn of(errors: &[Option<Errors>]) -> Self {
+    pub fn of(errors: &[Option<RecordingResiduals>]) -> Self {
         let signal = |e: &Vec<f64>| {
             let known = e.iter().filter(|v| !v.is_nan());
             known.fold((0.0, 0.0), |(sum, n), e| (sum + e * e, n + 1.0))
         };
-        Left { recordings: errors.iter().map(|e| Some(e.as_ref()?.iter().map(signal).collect())).collect() }
+        GapFigures { recordings: errors.iter().map(|e| Some(e.as_ref()?.iter().map(signal).collect())).collect() }
     }
 
     /// RMS of a signal over all recordings, SI; `None` where a run stops early, or nothing was measured.
-    pub fn signal(&self, i: usize) -> Maybe {
+    pub fn signal(&self, i: usize) -> OptionalNumber {
         let mut all = (0.0, 0.0);
         for r in &self.recordings {
             let (sum, n) = r.as_ref()?[i];
@@ -40,7 +40,7 @@ impl Left {
     }
 
     /// RMS over the signals of their parts of full scale; signals that were not measured do not count.
-    pub fn total(&self, full_scale: &[f64]) -> Maybe {
+    pub fn total(&self, full_scale: &[f64]) -> OptionalNumber {
         if self.recordings.iter().any(Option::is_none) {
             return None;
         }
@@ -61,9 +61,9 @@ impl Left {
 
 /// Signals at which a model leaves an open gap on these recordings, wider than sensor and range allow; the widest part of
 /// its range first.
-pub fn open(problem: &Problem<'_>, left: &Left, recordings: &[Recording]) -> Vec<OpenGap> {
+pub fn open(problem: &DiagnosisProblem<'_>, left: &GapFigures, recordings: &[RecordingData]) -> Vec<OpenGap> {
     let stops = left.recordings.iter().any(Option::is_none);
-    let gap = |(i, signal): (usize, &Signal)| {
+    let gap = |(i, signal): (usize, &SensorSignal)| {
         let (rms, range, shown) = (left.signal(i), range(recordings, i), &problem.shown[i]);
         let bound = (CLOSED_NOISE * problem.noise_floor[i]).max(CLOSED_RANGE * range);
         let wide = rms.map_or(stops, |rms| rms > bound);
@@ -82,17 +82,17 @@ pub fn open(problem: &Problem<'_>, left: &Left, recordings: &[Recording]) -> Vec
 }
 
 /// How far a signal moves in recordings, SI; its size where it stands still.
-fn range(recordings: &[Recording], i: usize) -> f64 {
+fn range(recordings: &[RecordingData], i: usize) -> f64 {
     let values = || recordings.iter().flat_map(|r| r.signals[i].iter().copied()).filter(|v| !v.is_nan());
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     if high > low { high - low } else { high.abs().max(f64::MIN_POSITIVE) }
 }
 
 /// The figures of three models (nominal, within tolerances, with effects) on recordings of one kind.
-pub fn side(problem: &Problem<'_>, models: [&Left; 3], recordings: &[Recording]) -> Side {
-    let columns = |of: &dyn Fn(&Left) -> Maybe| {
+pub fn side(problem: &DiagnosisProblem<'_>, models: [&GapFigures; 3], recordings: &[RecordingData]) -> RoleGaps {
+    let columns = |of: &dyn Fn(&GapFigures) -> OptionalNumber| {
         let [nominal, tolerances, effects] = models.map(of);
-        Columns { nominal, tolerances, effects }
+        ModelGaps { nominal, tolerances, effects }
     };
     let signal = |i: usize| {
         let (scale, range) = (problem.full_scale[i], range(recordings, i));
@@ -107,7 +107,7 @@ pub fn side(problem: &Problem<'_>, models: [&Left; 3], recordings: &[Recording])
         }
     };
     let signals = problem.signals.iter().enumerate().map(|(i, s)| (s.name.clone(), signal(i)));
-    Side { total: columns(&|l| l.total(&problem.full_scale)), signals: signals.collect::<BTreeMap<_, _>>() }
+    RoleGaps { total: columns(&|l| l.total(&problem.full_scale)), signals: signals.collect::<BTreeMap<_, _>>() }
 }
 
 #[cfg(test)]
@@ -117,12 +117,12 @@ mod tests {
     #[test]
     fn nothing_is_subtracted_and_what_stops_early_has_no_figure() {
         let run = |errors: &[f64]| Some(vec![errors.to_vec()]);
-        let left = Left::of(&[run(&[3.0, f64::NAN, 3.0]), run(&[0.0, 0.0, 0.0])]);
+        let left = GapFigures::of(&[run(&[3.0, f64::NAN, 3.0]), run(&[0.0, 0.0, 0.0])]);
         // two errors of 3 and three of 0
         assert!((left.signal(0).unwrap() - (18.0_f64 / 5.0).sqrt()).abs() < 1e-15);
         assert!((left.total(&[2.0]).unwrap() - (18.0_f64 / 5.0).sqrt() / 2.0).abs() < 1e-15);
         assert_eq!(left.wider(0, 1.0), 1);
-        let stopped = Left::of(&[run(&[3.0]), None]);
+        let stopped = GapFigures::of(&[run(&[3.0]), None]);
         assert_eq!((stopped.signal(0), stopped.total(&[1.0]), stopped.wider(0, 1.0)), (None, None, 2));
     }
 }

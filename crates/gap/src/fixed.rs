@@ -3,18 +3,18 @@
 //! The classes are those that the compiler read. Connections that a Series element cuts are removed from the copy of
 //! the nominal class. Only `Modelica` itself is left out, which every tool brings along.
 
-use super::augment::{Attached, Form, SOURCE, broken, cut, request, written};
-use super::circuit::Circuit;
-use super::estimate::Fit;
-use super::hypotheses::{Signal, Site};
-use super::problem::Problem;
+use super::augment::{AugmentationForm, HypothesisInstance, SOURCE, broken, cut, request, written};
+use super::circuit::CircuitTopology;
+use super::estimate::ModelFit;
+use super::hypotheses::{AttachmentSite, SensorSignal};
+use super::problem::DiagnosisProblem;
 use bramah_model::compile::{Request, flatten};
-use bramah_model::flat::Experiment;
+use bramah_model::flat::ExperimentAnnotation;
 use bramah_syntax::ast::{
-    ArgumentKind, Class, ClassBody, Element, ElementKind, Equation, EquationKind, Expr, ExprKind, Modification,
-    StoredDefinition,
+    Class, ClassBody, Element, ElementKind, Equation, EquationKind, Expr, ExprKind, Modification,
+    ModificationArgumentKind, StoredDefinition,
 };
-use bramah_syntax::diag::{Checked, Code, Diagnostic, FileId, Sources};
+use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources, StageResult};
 use bramah_syntax::world::World;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -30,10 +30,10 @@ pub fn fixed(
     world: &dyn World,
     nominal: &Request,
     folder: Option<&Path>,
-    circuit: &Circuit,
-    attached: &[Attached<'_>],
-    signals: &[Signal],
-) -> Checked<String> {
+    circuit: &CircuitTopology,
+    attached: &[HypothesisInstance<'_>],
+    signals: &[SensorSignal],
+) -> StageResult<String> {
     write(world, nominal, folder, circuit, attached, signals, &drifts(attached))
 }
 
@@ -45,10 +45,10 @@ pub fn fixed(
 ///
 /// # Errors
 /// As [`fixed`].
-pub fn corrected(problem: &Problem<'_>, fit: &Fit) -> Checked<String> {
+pub fn corrected(problem: &DiagnosisProblem<'_>, fit: &ModelFit) -> StageResult<String> {
     let theta = fit.candidate.theta(&fit.x);
     let causes = fit.causes();
-    let attached: Vec<Attached<'_>> =
+    let attached: Vec<HypothesisInstance<'_>> =
         causes.iter().enumerate().map(|(i, c)| problem.attached(c, &format!("e{i}"))).collect();
     let mut values = drifts(&attached);
     let mut left = String::new();
@@ -61,50 +61,52 @@ pub fn corrected(problem: &Problem<'_>, fit: &Fit) -> Checked<String> {
     }
     let (request, folder) = (&problem.request, problem.folder.as_deref());
     let file = write(problem.world, request, folder, &problem.circuit, &attached, &problem.signals, &values);
-    Checked { value: file.value.map(|text| format!("{left}{text}")), diagnostics: file.diagnostics }
+    StageResult { value: file.value.map(|text| format!("{left}{text}")), diagnostics: file.diagnostics }
 }
 
 fn write(
     world: &dyn World,
     nominal: &Request,
     folder: Option<&Path>,
-    circuit: &Circuit,
-    attached: &[Attached<'_>],
-    signals: &[Signal],
+    circuit: &CircuitTopology,
+    attached: &[HypothesisInstance<'_>],
+    signals: &[SensorSignal],
     drifts: &[(String, f64)],
-) -> Checked<String> {
+) -> StageResult<String> {
     let annotation = experiment(&circuit.experiment);
-    let form = |cut| Form { class: CLASS, cut, drifts, annotation: annotation.clone() };
+    let form = |cut| AugmentationForm { class: CLASS, cut, drifts, annotation: annotation.clone() };
     let with_breaks = written(circuit, attached, signals, form(false));
     let (overlay, request) = request(world, nominal, folder, &with_breaks, CLASS);
     let outcome = flatten(&overlay, &request);
     if outcome.value.is_none() {
-        return Checked::failed(outcome.diagnostics);
+        return StageResult::failed(outcome.diagnostics);
     }
-    let mut classes = Classes::of(&outcome.sources);
+    let mut classes = PackageClasses::of(&outcome.sources);
     for (a, b) in broken(circuit, &cut(attached)) {
         let names = [&circuit.ports[a].name, &circuit.ports[b].name].map(String::as_str);
         if !classes.disconnect(&circuit.class, names) {
             let text =
                 format!("the connection of `{}` and `{}` is not found where it could be cut", names[0], names[1]);
-            return Checked::failed(vec![Diagnostic::new(Code::BadModel, text)]);
+            return StageResult::failed(vec![Diagnostic::new(Code::BadModel, text)]);
         }
     }
     let own = written(circuit, attached, signals, form(true));
-    Checked::new(format!("{}\n{}", StoredDefinition { within: None, classes: classes.top }, own.text), Vec::new())
+    StageResult::new(format!("{}\n{}", StoredDefinition { within: None, classes: classes.top }, own.text), Vec::new())
 }
 
-fn drifts(attached: &[Attached<'_>]) -> Vec<(String, f64)> {
+fn drifts(attached: &[HypothesisInstance<'_>]) -> Vec<(String, f64)> {
     let mut drifts = Vec::new();
     for a in attached {
-        if let (Site::Parameter(name), Some((_, value))) = (&a.hypothesis.attachments[0].site, a.values.first()) {
+        if let (AttachmentSite::Parameter(name), Some((_, value))) =
+            (&a.hypothesis.attachments[0].site, a.values.first())
+        {
             drifts.push((name.clone(), *value));
         }
     }
     drifts
 }
 
-fn experiment(e: &Experiment) -> String {
+fn experiment(e: &ExperimentAnnotation) -> String {
     let fields =
         [("StartTime", e.start_time), ("StopTime", e.stop_time), ("Interval", e.interval), ("Tolerance", e.tolerance)];
     let fields: Vec<String> = fields.iter().filter_map(|(n, v)| v.map(|v| format!("{n} = {v:e}"))).collect();
@@ -112,11 +114,11 @@ fn experiment(e: &Experiment) -> String {
 }
 
 /// The classes read, each inside the package it belongs to.
-struct Classes {
+struct PackageClasses {
     top: Vec<Class>,
 }
 
-impl Classes {
+impl PackageClasses {
     fn of(sources: &Sources) -> Self {
         let packages: BTreeSet<&Path> = sources.iter().filter_map(|s| package_folder(&s.path)).collect();
         let mut files: Vec<(Vec<String>, bool, &str)> = Vec::new();
@@ -126,7 +128,7 @@ impl Classes {
         }
         // Packages before what lies in them.
         files.sort_by_key(|(around, is_package, _)| (around.len(), !is_package));
-        let mut classes = Classes { top: Vec::new() };
+        let mut classes = PackageClasses { top: Vec::new() };
         for (around, _, text) in files {
             for mut class in bramah_syntax::parse(FileId(0), text).tree.classes {
                 strip_experiment(&mut class);
@@ -229,8 +231,9 @@ fn name(e: &Expr) -> String {
 /// Only `Fixed` is to be run.
 fn strip_experiment(class: &mut Class) {
     if let Some(Modification { arguments, .. }) = &mut class.annotation {
-        arguments
-            .retain(|a| !matches!(&a.kind, ArgumentKind::Modify { path, .. } if path.parts[0].name == "experiment"));
+        arguments.retain(
+            |a| !matches!(&a.kind, ModificationArgumentKind::Modify { path, .. } if path.parts[0].name == "experiment"),
+        );
         if arguments.is_empty() {
             class.annotation = None;
         }

@@ -1,4 +1,4 @@
-//! The gap between model and machine: where it lies, which effect causes it, how far it shrinks. [`diagnose`] does it all.
+//! The gap between model and machine: where it lies, which effect causes it, how far it shrinks. [`fn@diagnose`] does it all.
 //!
 //! Data goes one way. [`study`] reads the question into a [`problem`]: [`effects`] reads the effect models, [`circuit`] the
 //! places of the nominal model, [`hypotheses`] puts every effect at every place where it fits, [`shapes`] fits their grids

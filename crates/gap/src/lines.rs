@@ -1,7 +1,7 @@
 //! Spectral lines: frequencies at which the recordings part from the nominal model and at which no input moves. A periodic
 //! disturbance that follows no variable shows as one.
 
-use super::problem::Problem;
+use super::problem::DiagnosisProblem;
 use std::f64::consts::PI;
 
 /// Samples of each recording that are looked at, at most.
@@ -21,19 +21,19 @@ const MOST: usize = 3;
 const FINER: usize = 8;
 
 /// Frequencies in Hz, the clearest first; empty where the nominal model does not reach the end.
-pub fn lines(problem: &Problem<'_>) -> Vec<f64> {
+pub fn lines(problem: &DiagnosisProblem<'_>) -> Vec<f64> {
     let Some(shown) = problem.observe(&problem.signals) else { return Vec::new() };
     let mut from = 0;
-    let mut left: Vec<Vec<Series>> = vec![Vec::new(); problem.signals.len()];
-    let mut moved: Vec<Vec<Series>> = vec![Vec::new(); problem.circuit.inputs.len()];
+    let mut left: Vec<Vec<WindowedDifferences>> = vec![Vec::new(); problem.signals.len()];
+    let mut moved: Vec<Vec<WindowedDifferences>> = vec![Vec::new(); problem.circuit.inputs.len()];
     for r in &problem.train {
         let n = r.len().min(SAMPLES);
         let step = r.duration() / (r.len() - 1).max(1) as f64;
         for (i, own) in left.iter_mut().enumerate() {
             let values = r.signals[i].iter().zip(&shown[i][from..]).take(n).map(|(y, s)| y - s).collect();
-            own.push(Series::new(values, step));
+            own.push(WindowedDifferences::new(values, step));
         }
-        moved.iter_mut().zip(&r.inputs).for_each(|(own, u)| own.push(Series::new(u[..n].to_vec(), step)));
+        moved.iter_mut().zip(&r.inputs).for_each(|(own, u)| own.push(WindowedDifferences::new(u[..n].to_vec(), step)));
         from += r.len();
     }
     let Some(frequencies) = frequencies(&left) else { return Vec::new() };
@@ -62,20 +62,20 @@ pub fn lines(problem: &Problem<'_>) -> Vec<f64> {
 
 /// Differences of samples, which leave lines and take away what drifts, in a Hann window.
 #[derive(Clone)]
-struct Series {
+struct WindowedDifferences {
     values: Vec<f64>,
     step: f64,
 }
 
-impl Series {
-    fn new(samples: Vec<f64>, step: f64) -> Series {
+impl WindowedDifferences {
+    fn new(samples: Vec<f64>, step: f64) -> WindowedDifferences {
         let n = samples.len().saturating_sub(1).max(1) as f64;
         let window = |k: usize| 0.5 - 0.5 * (2.0 * PI * (k as f64 + 0.5) / n).cos();
         let difference = |(k, w): (usize, &[f64])| {
             let d = (w[1] - w[0]) * window(k);
             if d.is_finite() { d } else { 0.0 }
         };
-        Series { values: samples.windows(2).enumerate().map(difference).collect(), step }
+        WindowedDifferences { values: samples.windows(2).enumerate().map(difference).collect(), step }
     }
 
     fn duration(&self) -> f64 {
@@ -99,10 +99,10 @@ pub fn goertzel(values: &[f64], turn: f64) -> f64 {
 }
 
 /// Frequencies that all recordings can show, as dense as the longest tells them apart.
-fn frequencies(series: &[Vec<Series>]) -> Option<Vec<f64>> {
+fn frequencies(series: &[Vec<WindowedDifferences>]) -> Option<Vec<f64>> {
     let all = || series.iter().flatten();
-    let longest = all().map(Series::duration).fold(0.0, f64::max);
-    let shortest = all().map(Series::duration).fold(f64::INFINITY, f64::min);
+    let longest = all().map(WindowedDifferences::duration).fold(0.0, f64::max);
+    let shortest = all().map(WindowedDifferences::duration).fold(f64::INFINITY, f64::min);
     let slowest = all().map(|s| s.step).fold(0.0, f64::max);
     let (least, most) = (PERIODS / shortest, 1.0 / (PER_PERIOD * slowest));
     let count = ((most - least) * longest).floor();
@@ -111,7 +111,7 @@ fn frequencies(series: &[Vec<Series>]) -> Option<Vec<f64>> {
 }
 
 /// How far each frequency stands above its neighbours, as mean logarithm over the recordings.
-fn heights(series: &[Series], frequencies: &[f64]) -> Vec<f64> {
+fn heights(series: &[WindowedDifferences], frequencies: &[f64]) -> Vec<f64> {
     let mut sum = vec![0.0; frequencies.len()];
     for s in series {
         let powers: Vec<f64> = frequencies.iter().map(|&f| s.power(f)).collect();
@@ -128,7 +128,7 @@ fn heights(series: &[Series], frequencies: &[f64]) -> Vec<f64> {
 }
 
 /// The frequency near one of the list at which the recordings together have most power.
-fn placed(series: &[Series], frequency: f64, distance: f64) -> f64 {
+fn placed(series: &[WindowedDifferences], frequency: f64, distance: f64) -> f64 {
     let size: Vec<f64> = series.iter().map(|s| s.power(frequency).max(f64::MIN_POSITIVE)).collect();
     let power = |f: f64| series.iter().zip(&size).map(|(s, size)| s.power(f) / size).sum::<f64>();
     let (mut best, mut reach) = (frequency, distance);
@@ -156,7 +156,7 @@ mod tests {
     fn a_line_in_noise_stands_out_and_is_placed() {
         let make = |phase: f64, seed: usize| {
             let value = |k: usize| noise(k + seed) + 0.5 * (2.0 * PI * 7.313 * k as f64 * 1e-3 + phase).sin();
-            Series::new((0..4000).map(value).collect(), 1e-3)
+            WindowedDifferences::new((0..4000).map(value).collect(), 1e-3)
         };
         let series = vec![make(0.0, 0), make(2.0, 5000), make(4.0, 10000)];
         let frequencies = frequencies(std::slice::from_ref(&series)).expect("enough");
@@ -169,7 +169,7 @@ mod tests {
 
     #[test]
     fn noise_alone_has_no_line() {
-        let make = |seed: usize| Series::new((0..4000).map(|k| noise(k + seed)).collect(), 1e-3);
+        let make = |seed: usize| WindowedDifferences::new((0..4000).map(|k| noise(k + seed)).collect(), 1e-3);
         let series = vec![make(0), make(7000)];
         let frequencies = frequencies(std::slice::from_ref(&series)).expect("enough");
         assert!(heights(&series, &frequencies).iter().all(|h| *h < LINE));

@@ -2,9 +2,11 @@
 //! is the simplest of all hypotheses.
 
 use super::circuit::same_kind;
-use super::effects::{Coefficient, Effect};
-use super::hypotheses::{Attachment, Hypothesis, Kind, Place, Sharing, Site};
-use super::problem::Problem;
+use super::effects::{EffectCoefficient, EffectModel};
+use super::hypotheses::{
+    AttachmentSite, CoefficientSharing, EffectAttachment, Hypothesis, MissingQuantity, NetworkLocation,
+};
+use super::problem::DiagnosisProblem;
 use std::sync::Arc;
 
 /// Family of such hypotheses.
@@ -38,21 +40,21 @@ const COLD: f64 = 150.0;
 const SAME: f64 = 1e-3;
 
 /// A wrong sign, and every wrong unit, of each signal and each input.
-pub fn mistakes(problem: &Problem<'_>, catalogue: &[Arc<Effect>]) -> Vec<Hypothesis> {
+pub fn mistakes(problem: &DiagnosisProblem<'_>, catalogue: &[Arc<EffectModel>]) -> Vec<Hypothesis> {
     let effect = |class: &str| catalogue.iter().find(|e| e.class == class).cloned();
     let (Some(sensor), Some(command)) = (effect(SENSOR), effect(COMMAND)) else { return Vec::new() };
     let signals = problem.signals.iter().zip(&problem.shown).enumerate().flat_map(|(i, (s, shown))| {
         let unit = problem.circuit.units.get(&s.variable).map_or("", String::as_str);
-        let site = Site::Sensor(s.name.clone());
+        let site = AttachmentSite::Sensor(s.name.clone());
         let factors = if is_rise(problem, i, unit) { vec![-1.0] } else { factors(unit, Some(1.0 / shown.factor)) };
         factors.into_iter().map(move |f| (site.clone(), s.name.clone(), f)).collect::<Vec<_>>()
     });
-    let inputs = problem.circuit.inputs.iter().filter(|i| i.ty == bramah_model::flat::Type::Real).flat_map(|i| {
-        let site = Site::Command(i.name.clone());
+    let inputs = problem.circuit.inputs.iter().filter(|i| i.ty == bramah_model::flat::ScalarType::Real).flat_map(|i| {
+        let site = AttachmentSite::Command(i.name.clone());
         factors(&i.unit, None).into_iter().map(move |f| (site.clone(), i.name.clone(), f)).collect::<Vec<_>>()
     });
-    let signals = signals.map(|(site, name, f)| hypothesis(&sensor, site, &name, Kind::Sensor, f));
-    let inputs = inputs.map(|(site, name, f)| hypothesis(&command, site, &name, Kind::Signal, f));
+    let signals = signals.map(|(site, name, f)| hypothesis(&sensor, site, &name, MissingQuantity::Sensor, f));
+    let inputs = inputs.map(|(site, name, f)| hypothesis(&command, site, &name, MissingQuantity::Signal, f));
     signals.chain(inputs).collect()
 }
 
@@ -62,7 +64,7 @@ pub fn factor(h: &Hypothesis) -> f64 {
 }
 
 /// Whether a signal is the rise of a temperature: no machine is as cold as that.
-fn is_rise(problem: &Problem<'_>, signal: usize, unit: &str) -> bool {
+fn is_rise(problem: &DiagnosisProblem<'_>, signal: usize, unit: &str) -> bool {
     let values = || problem.train.iter().flat_map(|r| r.signals[signal].iter()).filter(|v| v.is_finite());
     same_kind("K", unit) && values().all(|v| v.abs() < COLD)
 }
@@ -89,17 +91,23 @@ fn factors(unit: &str, declared: Option<f64>) -> Vec<f64> {
     all
 }
 
-fn hypothesis(effect: &Arc<Effect>, site: Site, name: &str, kind: Kind, factor: f64) -> Hypothesis {
-    let place = Place { place: name.into(), node: vec![name.into()], kind };
+fn hypothesis(
+    effect: &Arc<EffectModel>,
+    site: AttachmentSite,
+    name: &str,
+    kind: MissingQuantity,
+    factor: f64,
+) -> Hypothesis {
+    let place = NetworkLocation { place: name.into(), node: vec![name.into()], kind };
     let attachment =
-        Attachment { effect: Some(effect.clone()), site, sense: vec![], base: vec![], temperature: None, place };
+        EffectAttachment { effect: Some(effect.clone()), site, sense: vec![], base: vec![], temperature: None, place };
     let k = factor - 1.0;
-    let usual = |c: &Coefficient| Coefficient { min: Some(k), max: Some(k), nominal: k, ..c.clone() };
+    let usual = |c: &EffectCoefficient| EffectCoefficient { min: Some(k), max: Some(k), nominal: k, ..c.clone() };
     Hypothesis {
         effect: effect.class.clone(),
         family: FAMILY.into(),
         attachments: vec![attachment],
-        sharing: Sharing::Single,
+        sharing: CoefficientSharing::Single,
         coefficients: effect.coefficients.iter().map(usual).collect(),
         shapes: Vec::new(),
         changes_order: false,

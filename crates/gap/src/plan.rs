@@ -3,12 +3,12 @@
 //! signals with all hypotheses are weighed by the sensors' noise and accuracy; how much of one effect's trajectory another one's
 //! could take over follows from their products.
 
-use super::data::Recording;
-use super::estimate::candidate::Products as Sums;
-use super::estimate::{Candidate, Fit, Weights};
-use super::hypotheses::{Hypothesis, Place, Signal};
+use super::data::RecordingData;
+use super::estimate::candidate::SensitivityProducts as Sums;
+use super::estimate::{CandidateModel, ModelFit, SignalWeights};
+use super::hypotheses::{Hypothesis, NetworkLocation, SensorSignal};
 use super::policy::{ACCURACY, ALPHA, SEEN};
-use super::problem::{Chosen, Problem};
+use super::problem::{DiagnosisProblem, HypothesisValues};
 use super::select::models::{attached, beginnings};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
@@ -33,22 +33,22 @@ const LEVELS: usize = 8;
 
 /// What a planned experiment would show.
 #[derive(Clone, Debug, Serialize)]
-pub struct Plan {
+pub struct ExperimentPlan {
     /// Version of this form.
     pub schema: u32,
     /// Every effect at every place with what it would gain at its usual size.
-    pub hypotheses: Vec<Seen>,
+    pub hypotheses: Vec<EffectDetectability>,
     /// Pairs that could not be told apart: the first one is there, and the second explains it nearly as well.
-    pub confused: Vec<Pair>,
+    pub confused: Vec<EffectPair>,
     /// Other excitations of the same inputs over the same range and time.
-    pub excitations: Vec<Change>,
+    pub excitations: Vec<ExperimentChange>,
     /// Further sensors, one at a time.
-    pub sensors: Vec<Change>,
+    pub sensors: Vec<ExperimentChange>,
 }
 
 /// An effect at its usual size.
 #[derive(Clone, Debug, Serialize)]
-pub struct Seen {
+pub struct EffectDetectability {
     /// Its class.
     pub effect: String,
     /// Its family.
@@ -59,9 +59,9 @@ pub struct Seen {
     pub nats: f64,
 }
 
-/// Two effects, as numbers into [`Plan::hypotheses`].
+/// Two effects, as numbers into [`ExperimentPlan::hypotheses`].
 #[derive(Clone, Debug, Serialize)]
-pub struct Pair {
+pub struct EffectPair {
     /// The one that is there.
     pub there: usize,
     /// The one that stands in for it.
@@ -72,7 +72,7 @@ pub struct Pair {
 
 /// What another excitation or a further sensor would change.
 #[derive(Clone, Debug, Serialize)]
-pub struct Change {
+pub struct ExperimentChange {
     /// The excitation, or the variable that the sensor shows.
     pub what: String,
     /// Effects that would be seen.
@@ -83,12 +83,13 @@ pub struct Change {
 
 /// Weighs the plan, which stands in the problem as simulated train recordings. `None` where the nominal model does not
 /// reach their end.
-pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option<Plan> {
+pub fn plan(problem: &mut DiagnosisProblem<'_>, progress: &mut dyn FnMut(&str)) -> Option<ExperimentPlan> {
     progress("the plan");
-    let planned = Products::new(problem)?;
-    let hypotheses: Vec<Seen> = problem.hypotheses.iter().enumerate().map(|(i, h)| planned.seen(h, i)).collect();
+    let planned = WhitenedProducts::new(problem)?;
+    let hypotheses: Vec<EffectDetectability> =
+        problem.hypotheses.iter().enumerate().map(|(i, h)| planned.seen(h, i)).collect();
     let confused = planned.confused();
-    let change = |what: String, products: &Products| Change {
+    let change = |what: String, products: &WhitenedProducts| ExperimentChange {
         what,
         seen: (0..hypotheses.len()).filter(|&h| products.nats(h) > SEEN).count(),
         separates: confused.iter().filter(|p| products.behind(p.there, p.instead) > certain()).count(),
@@ -98,7 +99,7 @@ pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option
     for (name, trajectory) in EXCITATIONS {
         progress(name);
         if excite(problem, &measured[0], trajectory).is_some()
-            && let Some(products) = Products::new(problem)
+            && let Some(products) = WhitenedProducts::new(problem)
         {
             excitations.push(change(name.to_string(), &products));
         }
@@ -111,29 +112,29 @@ pub fn plan(problem: &mut Problem<'_>, progress: &mut dyn FnMut(&str)) -> Option
             sensors.push(change(signal.variable, &products));
         }
     }
-    let order = |all: &mut Vec<Change>| all.sort_by_key(|c| std::cmp::Reverse((c.separates, c.seen)));
+    let order = |all: &mut Vec<ExperimentChange>| all.sort_by_key(|c| std::cmp::Reverse((c.separates, c.seen)));
     order(&mut excitations);
     order(&mut sensors);
-    Some(Plan { schema: 1, hypotheses, confused, excitations, sensors })
+    Some(ExperimentPlan { schema: 1, hypotheses, confused, excitations, sensors })
 }
 
 /// Products of the whitened columns of all hypotheses, what tolerances can take over taken out.
-struct Products {
+struct WhitenedProducts {
     gram: DMatrix<f64>,
     /// Per hypothesis its variants: columns, and the size of each coefficient.
     variants: Vec<Vec<(Range<usize>, Vec<f64>)>>,
 }
 
-impl Products {
-    fn new(problem: &Problem<'_>) -> Option<Self> {
+impl WhitenedProducts {
+    fn new(problem: &DiagnosisProblem<'_>) -> Option<Self> {
         // what is there as a whole or not at all would change the model for all others
         let vanishes = |h: &Hypothesis| h.coefficients.iter().all(|c| c.whole().is_none());
         let attachable = |h: &Hypothesis| h.family != "parameter" && !h.changes_order && !h.is_shape() && vanishes(h);
-        let chosen: Vec<Chosen> = (0..problem.hypotheses.len())
+        let chosen: Vec<HypothesisValues> = (0..problem.hypotheses.len())
             .filter(|&i| attachable(&problem.hypotheses[i]))
             .flat_map(|hypothesis| {
                 let all = beginnings(&problem.hypotheses[hypothesis]).into_iter();
-                all.map(move |values| Chosen { hypothesis, values })
+                all.map(move |values| HypothesisValues { hypothesis, values })
             })
             .collect();
         let model = joined(problem, chosen)?;
@@ -152,12 +153,12 @@ impl Products {
             variants[i].extend(place.map(|t| (t..t + 1, vec![OUT])));
         }
         let gram = without_tolerances(&gram(problem, model)?, tolerances)?;
-        Some(Products { gram, variants })
+        Some(WhitenedProducts { gram, variants })
     }
 
-    fn seen(&self, h: &Hypothesis, index: usize) -> Seen {
-        let places = h.places().iter().map(|p: &&Place| p.place.clone()).collect();
-        Seen { effect: h.effect.clone(), family: h.family.clone(), places, nats: self.nats(index) }
+    fn seen(&self, h: &Hypothesis, index: usize) -> EffectDetectability {
+        let places = h.places().iter().map(|p: &&NetworkLocation| p.place.clone()).collect();
+        EffectDetectability { effect: h.effect.clone(), family: h.family.clone(), places, nats: self.nats(index) }
     }
 
     /// Nats that a hypothesis gains at its usual size, in the variant that shows most.
@@ -190,14 +191,14 @@ impl Products {
     }
 
     /// All pairs of effects of which the first would be seen and the second explains it nearly as well.
-    fn confused(&self) -> Vec<Pair> {
+    fn confused(&self) -> Vec<EffectPair> {
         let count = self.variants.len();
         let mut found = Vec::new();
         for there in (0..count).filter(|&h| self.nats(h) > SEEN) {
             for instead in (0..count).filter(|&h| h != there) {
                 let behind = self.behind(there, instead);
                 if behind < certain() {
-                    found.push(Pair { there, instead, behind });
+                    found.push(EffectPair { there, instead, behind });
                 }
             }
         }
@@ -207,14 +208,17 @@ impl Products {
 }
 
 /// A model with all hypotheses that can be attached together: where all cannot, halves of halves are tried.
-fn joined(problem: &Problem<'_>, chosen: Vec<Chosen>) -> Option<Candidate> {
-    let model = |chosen: &[Chosen]| {
+fn joined(problem: &DiagnosisProblem<'_>, chosen: Vec<HypothesisValues>) -> Option<CandidateModel> {
+    let model = |chosen: &[HypothesisValues]| {
         let model = attached(problem, chosen, None, 0, 0).ok()?;
         // what is compiled may have no values where it begins
         let first = beginning(problem.train.first()?, FEWEST);
         model.errors(&model.present(), &first, Some(0)).map(|_| model)
     };
-    fn fitting(joins: &dyn Fn(&[Chosen]) -> bool, mut chosen: Vec<Chosen>) -> Vec<Chosen> {
+    fn fitting(
+        joins: &dyn Fn(&[HypothesisValues]) -> bool,
+        mut chosen: Vec<HypothesisValues>,
+    ) -> Vec<HypothesisValues> {
         if joins(&chosen) || chosen.is_empty() {
             return chosen;
         }
@@ -230,24 +234,24 @@ fn joined(problem: &Problem<'_>, chosen: Vec<Chosen>) -> Option<Candidate> {
 }
 
 /// Products of the slopes of all coordinates over the train recordings.
-fn gram(problem: &Problem<'_>, model: Candidate) -> Option<DMatrix<f64>> {
-    let all: usize = problem.train.iter().map(Recording::len).sum();
+fn gram(problem: &DiagnosisProblem<'_>, model: CandidateModel) -> Option<DMatrix<f64>> {
+    let all: usize = problem.train.iter().map(RecordingData::len).sum();
     let each = (SAMPLES / problem.train.len().max(1)).max(FEWEST);
-    let used: Vec<Recording> = problem.train.iter().map(|r| beginning(r, each)).collect();
+    let used: Vec<RecordingData> = problem.train.iter().map(|r| beginning(r, each)).collect();
     let square = |(n, f): (&f64, &f64)| n * n + (ACCURACY * f).powi(2);
     let square = problem.noise_floor.iter().zip(&problem.full_scale).map(square).collect();
-    let weights = Weights { square, tau: vec![1.0; problem.signals.len()] };
+    let weights = SignalWeights { square, tau: vec![1.0; problem.signals.len()] };
     let x = model.present();
     let evaluated = model.evaluate(&x, &used)?;
-    let Sums { slopes, .. } = Fit { candidate: model, x, evaluated, weights }.sums(|_, _| true);
-    let seen: usize = used.iter().map(Recording::len).sum();
+    let Sums { slopes, .. } = ModelFit { candidate: model, x, evaluated, weights }.sums(|_, _| true);
+    let seen: usize = used.iter().map(RecordingData::len).sum();
     Some(slopes * (all as f64 / seen.max(1) as f64))
 }
 
 /// The first samples of a recording.
-fn beginning(r: &Recording, samples: usize) -> Recording {
+fn beginning(r: &RecordingData, samples: usize) -> RecordingData {
     let first = |values: &Arc<[f64]>| -> Arc<[f64]> { values[..samples.min(values.len())].into() };
-    Recording {
+    RecordingData {
         times: first(&r.times),
         inputs: r.inputs.iter().map(first).collect(),
         linear: r.linear.clone(),
@@ -270,9 +274,9 @@ fn without_tolerances(gram: &DMatrix<f64>, count: usize) -> Option<DMatrix<f64>>
 }
 
 /// A trajectory over the time from 0 to 1, with values from 0 to 1.
-type Trajectory = fn(f64) -> f64;
+type ExcitationProfile = fn(f64) -> f64;
 
-const EXCITATIONS: [(&str, Trajectory); 5] =
+const EXCITATIONS: [(&str, ExcitationProfile); 5] =
     [("steps", steps), ("slow triangle", triangle), ("chirp", chirp), ("staircase", staircase), ("hold", |_| 0.75)];
 
 /// Levels in an order that makes steps of all sizes.
@@ -296,7 +300,7 @@ fn staircase(t: f64) -> f64 {
 }
 
 /// Drives the inputs that the plan moves with another trajectory over the same range, alone.
-fn excite(problem: &mut Problem<'_>, planned: &Recording, trajectory: Trajectory) -> Option<()> {
+fn excite(problem: &mut DiagnosisProblem<'_>, planned: &RecordingData, trajectory: ExcitationProfile) -> Option<()> {
     let (t0, count) = (planned.times[0], planned.len());
     let span = planned.times[count - 1] - t0;
     let drive = |samples: &Arc<[f64]>| -> Arc<[f64]> {
@@ -308,7 +312,7 @@ fn excite(problem: &mut Problem<'_>, planned: &Recording, trajectory: Trajectory
         }
     };
     let inputs = planned.inputs.iter().map(drive).collect();
-    problem.train = vec![Recording { inputs, ..planned.clone() }];
+    problem.train = vec![RecordingData { inputs, ..planned.clone() }];
     problem.show()
 }
 
@@ -318,7 +322,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
 }
 
 /// Potentials that nothing measures yet, one a node.
-fn further(problem: &Problem<'_>) -> Vec<Signal> {
+fn further(problem: &DiagnosisProblem<'_>) -> Vec<SensorSignal> {
     let measured: BTreeSet<&str> = problem.signals.iter().map(|s| s.variable.as_str()).collect();
     let mut found = Vec::new();
     for node in problem.circuit.nodes.iter().filter(|n| !n.fixed) {
@@ -330,17 +334,17 @@ fn further(problem: &Problem<'_>) -> Vec<Signal> {
         if let Some(first) = names.first()
             && !names.iter().any(|n| measured.contains(n.as_str()))
         {
-            found.push(Signal { name: first.clone(), variable: first.clone(), scale: 1.0 });
+            found.push(SensorSignal { name: first.clone(), variable: first.clone(), scale: 1.0 });
         }
     }
     let values = problem.observe(&found).unwrap_or_default();
-    let mut moving: Vec<Signal> = Vec::new();
+    let mut moving: Vec<SensorSignal> = Vec::new();
     let mut trajectories: Vec<Vec<f64>> = problem.observe(&problem.signals).unwrap_or_default();
     for (signal, trajectory) in found.into_iter().zip(values) {
         let (low, high) = ends(&trajectory);
         let alike = |other: &Vec<f64>| other.iter().zip(&trajectory).all(|(a, b)| (a - b).abs() <= 1e-6 * (high - low));
         if high > low && !trajectories.iter().any(alike) {
-            moving.push(Signal { scale: high - low, ..signal });
+            moving.push(SensorSignal { scale: high - low, ..signal });
             trajectories.push(trajectory);
         }
     }
@@ -348,11 +352,11 @@ fn further(problem: &Problem<'_>) -> Vec<Signal> {
     moving
 }
 
-fn with_sensor(problem: &mut Problem<'_>, signal: &Signal) -> Option<Products> {
+fn with_sensor(problem: &mut DiagnosisProblem<'_>, signal: &SensorSignal) -> Option<WhitenedProducts> {
     problem.signals.push(signal.clone());
     problem.noise_floor.push(NOISE * signal.scale);
     problem.full_scale.push(signal.scale);
-    let products = problem.show().and_then(|()| Products::new(problem));
+    let products = problem.show().and_then(|()| WhitenedProducts::new(problem));
     problem.signals.pop();
     problem.noise_floor.pop();
     problem.full_scale.pop();
@@ -360,7 +364,7 @@ fn with_sensor(problem: &mut Problem<'_>, signal: &Signal) -> Option<Products> {
     products
 }
 
-impl Plan {
+impl ExperimentPlan {
     /// The plan in words, for people.
     pub fn words(&self) -> String {
         let seen = self.hypotheses.iter().filter(|h| h.nats > SEEN).count();

@@ -1,15 +1,15 @@
 //! What is diagnosed: the nominal model with its places, hypotheses, tolerances and recordings; and the models made of
 //! it by attaching hypotheses and sources.
 
-use super::augment::{self, Attached, Augmented, PLANT};
-use super::circuit::Circuit;
+use super::augment::{self, AugmentedModel, HypothesisInstance, PLANT};
+use super::circuit::CircuitTopology;
 use super::clock::Deadline;
-use super::data::{Inputs, Recording};
-use super::estimate::Task;
+use super::data::{InputSegment, RecordingData};
+use super::estimate::FitTask;
 use super::estimate::simulation::{correction, from_start};
-use super::hypotheses::{Hypothesis, Signal, Site};
+use super::hypotheses::{AttachmentSite, Hypothesis, SensorSignal};
 use bramah_analysis::lift;
-use bramah_analysis::local::{Local, Plan};
+use bramah_analysis::local::{EvaluationPlan, LocalEvaluator};
 use bramah_expr::VarId;
 use bramah_model::compile::Request;
 use bramah_model::flat::FlatModel;
@@ -24,14 +24,14 @@ use std::sync::Arc;
 const DEFAULT: f64 = 10.0;
 /// The unit in which a signal is spoken of: that of the study's column.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Shown {
+pub struct SignalDisplayUnit {
     /// The unit; empty where there is none.
     pub unit: String,
     /// Differences in SI units times this are differences in the unit.
     pub factor: f64,
 }
 
-impl Shown {
+impl SignalDisplayUnit {
     /// A difference in the unit.
     pub fn value(&self, si: f64) -> f64 {
         si * self.factor
@@ -40,7 +40,7 @@ impl Shown {
 
 /// A parameter that may be off within its tolerance.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tolerance {
+pub struct ToleranceParameter {
     /// Full name in the nominal model.
     pub name: String,
     /// Its unit as written.
@@ -60,7 +60,7 @@ pub struct Tolerance {
 }
 
 /// The whole question.
-pub struct Problem<'a> {
+pub struct DiagnosisProblem<'a> {
     /// Where classes come from.
     pub world: &'a dyn World,
     /// The nominal model.
@@ -68,34 +68,34 @@ pub struct Problem<'a> {
     /// The folder with effects of the user's own.
     pub folder: Option<PathBuf>,
     /// Places of the nominal model.
-    pub circuit: Circuit,
+    pub circuit: CircuitTopology,
     /// All explanations.
     pub hypotheses: Vec<Hypothesis>,
     /// One source per node, command and sensor.
     pub disturbances: Vec<Hypothesis>,
     /// Measured signals.
-    pub signals: Vec<Signal>,
+    pub signals: Vec<SensorSignal>,
     /// Full scales of the signals, SI.
     pub full_scale: Vec<f64>,
     /// In which units the signals are spoken of.
-    pub shown: Vec<Shown>,
+    pub shown: Vec<SignalDisplayUnit>,
     /// Noise that the samples show, SI: an upper bound where signals move fast.
     pub noise_floor: Vec<f64>,
     /// Parameters with their tolerances.
-    pub tolerances: Vec<Tolerance>,
+    pub tolerances: Vec<ToleranceParameter>,
     /// Names of the train recordings, for messages alone.
     pub files: Vec<String>,
     /// Recordings to learn from.
-    pub train: Vec<Recording>,
-    /// How far states of the nominal model move over the recordings, by their names, SI; see [`Problem::explore`].
+    pub train: Vec<RecordingData>,
+    /// How far states of the nominal model move over the recordings, by their names, SI; see [`DiagnosisProblem::explore`].
     pub travel: BTreeMap<String, f64>,
 }
 
 /// A model with hypotheses attached, ready to be evaluated.
 #[derive(Clone, Debug)]
-pub struct Assembled {
+pub struct AssembledModel {
     /// Derivatives and all.
-    pub plan: Arc<Plan>,
+    pub plan: Arc<EvaluationPlan>,
     /// Value of each parameter of the plan.
     pub theta: Vec<f64>,
     /// Parameters of the plan that are tolerances, in their order: always the first ones.
@@ -113,12 +113,12 @@ pub struct Assembled {
     /// How far each state moves in the nominal model, SI; 0 where that is not known.
     pub travel: Vec<f64>,
     /// The Modelica text.
-    pub augmented: Augmented,
+    pub augmented: AugmentedModel,
 }
 
-impl Assembled {
+impl AssembledModel {
     /// States of an effect through which a signal passes are as large as the signal.
-    fn take_sizes_of(&mut self, attached: &Attached<'_>) {
+    fn take_sizes_of(&mut self, attached: &HypothesisInstance<'_>) {
         let Some(size) = attached.hypothesis.passes.filter(|s| s.is_normal()) else { return };
         let instances = format!("{}_", attached.name);
         let variables = &self.plan.system.dae.variables;
@@ -133,33 +133,34 @@ impl Assembled {
 
 /// A hypothesis with one choice of its shapes and values of its coefficients.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chosen {
-    /// Index into [`Problem::hypotheses`].
+pub struct HypothesisValues {
+    /// Index into [`DiagnosisProblem::hypotheses`].
     pub hypothesis: usize,
     /// Values of coefficients, then of shapes.
     pub values: Vec<f64>,
 }
 
-impl Problem<'_> {
+impl DiagnosisProblem<'_> {
     /// Its recordings, to fit models to for so long.
-    pub fn task<'b>(&'b self, until: Deadline<'b>) -> Task<'b> {
-        Task { train: &self.train, full_scale: &self.full_scale, until }
+    pub fn task<'b>(&'b self, until: Deadline<'b>) -> FitTask<'b> {
+        FitTask { train: &self.train, full_scale: &self.full_scale, until }
     }
 
     /// The unit of a signal's variable, as written.
-    pub fn unit(&self, signal: &Signal) -> String {
+    pub fn unit(&self, signal: &SensorSignal) -> String {
         self.circuit.units.get(&signal.variable).cloned().unwrap_or_default()
     }
 
     /// Physical sources: those at nodes.
     pub fn node_sources(&self) -> Vec<usize> {
-        let at_node = |d: &Hypothesis| matches!(d.attachments[0].site, Site::Node(_));
+        let at_node = |d: &Hypothesis| matches!(d.attachments[0].site, AttachmentSite::Node(_));
         (0..self.disturbances.len()).filter(|&i| at_node(&self.disturbances[i])).collect()
     }
 
     /// Median time between samples, s; 0 without any.
     pub fn step(&self) -> f64 {
-        let steps = |r: &Recording| r.times.windows(2).map(|w| w[1] - w[0]).filter(|h| *h > 0.0).collect::<Vec<f64>>();
+        let steps =
+            |r: &RecordingData| r.times.windows(2).map(|w| w[1] - w[0]).filter(|h| *h > 0.0).collect::<Vec<f64>>();
         let mut steps: Vec<f64> = self.train.iter().flat_map(steps).collect();
         steps.sort_by(f64::total_cmp);
         steps.get(steps.len() / 2).copied().unwrap_or(0.0)
@@ -169,26 +170,31 @@ impl Problem<'_> {
     ///
     /// # Errors
     /// The diagnostics of the compiler: a hypothesis that cannot be attached.
-    pub fn assemble(&self, chosen: &[Chosen], sources: &[usize]) -> Result<Assembled, Vec<Diagnostic>> {
+    pub fn assemble(&self, chosen: &[HypothesisValues], sources: &[usize]) -> Result<AssembledModel, Vec<Diagnostic>> {
         self.assembled(chosen, sources, chosen.len())
     }
 
     /// The same where only the first `shaped` hypotheses have free shapes: shapes that stand still cost less.
     ///
     /// # Errors
-    /// As [`Problem::assemble`].
-    pub fn assembled(&self, chosen: &[Chosen], sources: &[usize], shaped: usize) -> Result<Assembled, Vec<Diagnostic>> {
-        let attached: Vec<Attached<'_>> =
+    /// As [`DiagnosisProblem::assemble`].
+    pub fn assembled(
+        &self,
+        chosen: &[HypothesisValues],
+        sources: &[usize],
+        shaped: usize,
+    ) -> Result<AssembledModel, Vec<Diagnostic>> {
+        let attached: Vec<HypothesisInstance<'_>> =
             chosen.iter().enumerate().map(|(i, c)| self.attached(c, &instance(i))).collect();
         let mut all = attached.clone();
-        all.extend(sources.iter().map(|&s| Attached {
+        all.extend(sources.iter().map(|&s| HypothesisInstance {
             name: format!("s{s}"),
             hypothesis: &self.disturbances[s],
             values: Vec::new(),
         }));
         let augmented = augment::augment(&self.circuit, &all, &self.signals);
         let flat = self.flat(&augmented)?;
-        let still = |(i, c): (usize, &Chosen)| {
+        let still = |(i, c): (usize, &HypothesisValues)| {
             let count = self.hypotheses[c.hypothesis].coefficients.len();
             if i < shaped { usize::MAX } else { count }
         };
@@ -218,18 +224,18 @@ impl Problem<'_> {
 
     /// What the nominal model says of further variables over all train recordings, one after the other, from its own
     /// start; `None` where it does not reach the end.
-    pub fn observe(&self, variables: &[Signal]) -> Option<Vec<Vec<f64>>> {
+    pub fn observe(&self, variables: &[SensorSignal]) -> Option<Vec<Vec<f64>>> {
         self.observe_with(&[], None, variables)
     }
 
     /// The same of a model with hypotheses, whose parameters within their tolerances are these, SI.
     pub fn observe_with(
         &self,
-        chosen: &[Chosen],
+        chosen: &[HypothesisValues],
         tolerances: Option<&[f64]>,
-        variables: &[Signal],
+        variables: &[SensorSignal],
     ) -> Option<Vec<Vec<f64>>> {
-        let attached: Vec<Attached<'_>> =
+        let attached: Vec<HypothesisInstance<'_>> =
             chosen.iter().enumerate().map(|(i, c)| self.attached(c, &instance(i))).collect();
         let augmented = augment::augment(&self.circuit, &attached, variables);
         let flat = self.flat(&augmented).ok()?;
@@ -251,10 +257,10 @@ impl Problem<'_> {
         let Ok(model) = self.assemble(&[], &[]) else { return };
         let variables = &model.plan.system.dae.variables;
         let states = model.plan.state_variables();
-        let signals: Vec<Signal> = states
+        let signals: Vec<SensorSignal> = states
             .filter_map(|v| of_plant(&variables[v.index()].name))
             .enumerate()
-            .map(|(i, name)| Signal { name: format!("state_{i}"), variable: name.to_string(), scale: 1.0 })
+            .map(|(i, name)| SensorSignal { name: format!("state_{i}"), variable: name.to_string(), scale: 1.0 })
             .collect();
         let trajectories = self.observe(&signals).unwrap_or_default();
         let travel = |trajectory: &Vec<f64>| {
@@ -266,7 +272,7 @@ impl Problem<'_> {
     }
 
     /// The flat model of an augmented text.
-    fn flat(&self, augmented: &Augmented) -> Result<FlatModel, Vec<Diagnostic>> {
+    fn flat(&self, augmented: &AugmentedModel) -> Result<FlatModel, Vec<Diagnostic>> {
         let (overlay, request) =
             augment::request(self.world, &self.request, self.folder.as_deref(), augmented, "Augmented");
         let outcome = bramah_model::compile::flatten(&overlay, &request);
@@ -274,16 +280,21 @@ impl Problem<'_> {
     }
 
     /// A choice as the augmenter takes it.
-    pub fn attached(&self, chosen: &Chosen, name: &str) -> Attached<'_> {
+    pub fn attached(&self, chosen: &HypothesisValues, name: &str) -> HypothesisInstance<'_> {
         let hypothesis = &self.hypotheses[chosen.hypothesis];
-        let coefficients = hypothesis.coefficients.iter().map(super::effects::Coefficient::label);
+        let coefficients = hypothesis.coefficients.iter().map(super::effects::EffectCoefficient::label);
         let names = coefficients.chain(hypothesis.shapes.iter().map(|s| s.name.clone()));
         let values = names.zip(chosen.values.iter().copied()).collect();
-        Attached { name: name.into(), hypothesis, values }
+        HypothesisInstance { name: name.into(), hypothesis, values }
     }
 
     /// `counts`: how many of the parameters of each hypothesis are free.
-    fn lifted(&self, flat: FlatModel, augmented: Augmented, counts: &[usize]) -> Result<Assembled, Vec<Diagnostic>> {
+    fn lifted(
+        &self,
+        flat: FlatModel,
+        augmented: AugmentedModel,
+        counts: &[usize],
+    ) -> Result<AssembledModel, Vec<Diagnostic>> {
         let mut ids: Vec<VarId> = Vec::new();
         let mut add = |name: &str| -> Option<usize> {
             let v = variable(&flat, name)?;
@@ -308,15 +319,15 @@ impl Problem<'_> {
         }
         let sources = free.end..free.end + sources.len();
         let outputs: Vec<VarId> = augmented.signals.iter().filter_map(|n| variable(&flat, n)).collect();
-        let plan = Arc::new(Plan::new(&lift(&flat, &ids, &outputs))?);
+        let plan = Arc::new(EvaluationPlan::new(&lift(&flat, &ids, &outputs))?);
         let theta = plan.parameter_values();
         let u = vec![0.0; plan.inputs()];
         let sizes = match self.train.first() {
             Some(r) => {
-                let u = Inputs::new(r).from;
-                Local::start(plan.clone(), r.times[0], &theta, &u)
+                let u = InputSegment::new(r).from;
+                LocalEvaluator::start(plan.clone(), r.times[0], &theta, &u)
             }
-            None => Local::start(plan.clone(), 0.0, &theta, &u),
+            None => LocalEvaluator::start(plan.clone(), 0.0, &theta, &u),
         };
         let mut sizes = sizes.map_or_else(|_| vec![1.0; plan.states()], |l| l.nominals());
         let travel = |v: VarId| {
@@ -331,7 +342,18 @@ impl Problem<'_> {
             }
         }
         let correction = correction(&self.noise_floor, &self.full_scale);
-        Ok(Assembled { plan, theta, free, sources, attached, own: Vec::new(), sizes, correction, travel, augmented })
+        Ok(AssembledModel {
+            plan,
+            theta,
+            free,
+            sources,
+            attached,
+            own: Vec::new(),
+            sizes,
+            correction,
+            travel,
+            augmented,
+        })
     }
 }
 
@@ -341,11 +363,11 @@ fn instance(number: usize) -> String {
 }
 
 /// What flows through the first instance of a chosen hypothesis, SI; nothing where it is a signal or a parameter.
-pub fn through(number: usize, hypothesis: &Hypothesis) -> Option<Signal> {
+pub fn through(number: usize, hypothesis: &Hypothesis) -> Option<SensorSignal> {
     let effect = hypothesis.attachments[0].effect.as_ref()?;
     let through = effect.interface.through.as_ref()?;
     let variable = format!("{}.{}", augment::instance(&instance(number), 0), through.name);
-    Some(Signal { name: format!("through_{number}"), variable, scale: 1.0 })
+    Some(SensorSignal { name: format!("through_{number}"), variable, scale: 1.0 })
 }
 
 /// The name that a variable of the nominal model has there.

@@ -2,33 +2,38 @@
 //!
 //! The page needs no network and no other file; the curves can be zoomed like those of `bramah plot`.
 
-use super::data::Recording;
-use super::estimate::candidate::{Candidate, Errors};
-use super::hypotheses::Signal;
-use super::problem::Problem;
-use super::select::search::Found;
+use super::data::RecordingData;
+use super::estimate::candidate::{CandidateModel, RecordingResiduals};
+use super::hypotheses::SensorSignal;
+use super::problem::DiagnosisProblem;
+use super::select::search::EffectSearchResult;
 use super::select::weighed::at_nominal;
-use super::study::Held;
-use super::verdict::{Columns, Effect, Maybe, Side, SignalGap, Verdict, Weighed};
+use super::study::HoldoutData;
+use super::verdict::{HypothesisAssessment, ModelGaps, OptionalNumber, RoleGaps, SignalGap, Verdict, VerdictEffect};
 use super::whiteness::{Whiteness, whiteness};
 use super::words::{distance, estimate, findings, gap_row, number, percent, rest};
-use bramah_expr::units::Unit;
+use bramah_expr::units::MeasurementUnit;
 use bramah_model::compile::flatten;
-use bramah_plot::network::{self, Mark};
+use bramah_plot::network::{self, HeatMark};
 use bramah_plot::svg::escape;
-use bramah_plot::{Figure, Panel, Series, html};
+use bramah_plot::{Figure, FigurePanel, PlotSeries, html};
 use std::fmt::Write;
 
 /// Deviations of so many tolerances are set off in the table.
 const FAR: f64 = 2.0;
 
 /// What a model left, signal by signal, with the model's name.
-type Left = (&'static str, Vec<Whiteness>);
+type ModelWhiteness = (&'static str, Vec<Whiteness>);
 
 /// Writes the page.
-pub fn report(problem: &Problem<'_>, found: &Found, verdict: &Verdict, held: &Held) -> String {
-    let used: Vec<(&String, &Recording)> = problem.files.iter().zip(&problem.train).collect();
-    let others: Vec<(&String, &Recording)> = held.files.iter().zip(&held.recordings).collect();
+pub fn report(
+    problem: &DiagnosisProblem<'_>,
+    found: &EffectSearchResult,
+    verdict: &Verdict,
+    held: &HoldoutData,
+) -> String {
+    let used: Vec<(&String, &RecordingData)> = problem.files.iter().zip(&problem.train).collect();
+    let others: Vec<(&String, &RecordingData)> = held.files.iter().zip(&held.recordings).collect();
     let mut panels = Vec::new();
     for (i, (file, recording)) in used.iter().enumerate() {
         panels.extend(curves(problem, found, recording, Some(i), &format!("{file}, used")));
@@ -39,8 +44,8 @@ pub fn report(problem: &Problem<'_>, found: &Found, verdict: &Verdict, held: &He
     // without effects both are one
     let fits = [("within tolerances", &found.base.fit), ("with effects", &found.last.fit)];
     let fits = &fits[..1 + usize::from(!verdict.effects.is_empty())];
-    let of = |errors: &[Errors]| whiteness(errors, &problem.train, &problem.noise_floor);
-    let left: Vec<Left> = fits.iter().map(|(stage, fit)| (*stage, of(&fit.evaluated.errors))).collect();
+    let of = |errors: &[RecordingResiduals]| whiteness(errors, &problem.train, &problem.noise_floor);
+    let left: Vec<ModelWhiteness> = fits.iter().map(|(stage, fit)| (*stage, of(&fit.evaluated.errors))).collect();
     panels.extend(left.iter().map(|left| spectrum(problem, left)));
     let title = format!("Gap of {}", problem.circuit.class);
     let figure = Figure { title, panels, shared_x: false };
@@ -55,7 +60,7 @@ pub fn report(problem: &Problem<'_>, found: &Found, verdict: &Verdict, held: &He
 }
 
 /// Everything above the curves.
-fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
+fn before(problem: &DiagnosisProblem<'_>, v: &Verdict, left: &[ModelWhiteness]) -> String {
     let line = |line: &str| format!("<p>{}</p>\n", escape(line));
     // the gap has a table of its own below
     let mut out: String = [findings(v), rest(v)].concat().lines().map(line).collect();
@@ -81,7 +86,7 @@ fn before(problem: &Problem<'_>, v: &Verdict, left: &[Left]) -> String {
 }
 
 /// The network; the more certain a gap at a place, the deeper its colour.
-fn picture(problem: &Problem<'_>, v: &Verdict) -> String {
+fn picture(problem: &DiagnosisProblem<'_>, v: &Verdict) -> String {
     let Some(flattened) = flatten(problem.world, &problem.request).value else { return String::new() };
     let most = v.places.iter().map(|p| p.evidence).fold(0.0, f64::max);
     let mut marks = Vec::new();
@@ -90,7 +95,7 @@ fn picture(problem: &Problem<'_>, v: &Verdict) -> String {
         let note = format!("{} ({}): {:.0} nats", p.place, p.kind, p.evidence);
         let sensed = problem.signals.iter().find(|s| p.kind == "sensor" && s.name == p.place);
         let names = p.node.iter().chain(sensed.map(|s| &s.variable));
-        marks.extend(names.map(|name| Mark { name: name.clone(), heat, note: note.clone() }));
+        marks.extend(names.map(|name| HeatMark { name: name.clone(), heat, note: note.clone() }));
     }
     let drawn = network::write_marked(&flattened.graph, &problem.circuit.class, &marks);
     format!("<div class=\"network\">{drawn}</div>\n")
@@ -135,7 +140,7 @@ fn table(title: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
 }
 
 fn effects(v: &Verdict) -> Vec<Vec<String>> {
-    let row = |e: &Effect| {
+    let row = |e: &VerdictEffect| {
         let parameters: Vec<String> =
             e.parameters.iter().map(|(n, p)| escape(&format!("{n} = {}", estimate(p, "±")))).collect();
         let others: Vec<String> = e
@@ -162,7 +167,7 @@ fn effects(v: &Verdict) -> Vec<Vec<String>> {
     v.effects.iter().map(row).collect()
 }
 
-fn share(v: Maybe) -> String {
+fn share(v: OptionalNumber) -> String {
     v.map_or_else(|| "unknown".to_string(), percent)
 }
 
@@ -171,18 +176,18 @@ fn gaps(v: &Verdict) -> Vec<Vec<String>> {
         let cells = gap_row(name, g).map(|cell| escape(&cell));
         [vec![which.to_string()], cells.to_vec()].concat()
     };
-    let all = |which: &str, c: &Columns| {
+    let all = |which: &str, c: &ModelGaps| {
         let parts = [c.nominal, c.tolerances, c.effects].map(share);
         [vec![which.to_string(), "<b>all, of full scale</b>".to_string()], parts.to_vec(), vec![String::new()]].concat()
     };
-    let rows = |which: &str, side: &Side| -> Vec<Vec<String>> {
+    let rows = |which: &str, side: &RoleGaps| -> Vec<Vec<String>> {
         side.signals.iter().map(|(n, g)| signal(which, n, g)).chain([all(which, &side.total)]).collect()
     };
     [rows("held", &v.gap.held), rows("used", &v.gap.train)].concat()
 }
 
 fn drifts(v: &Verdict) -> Vec<Vec<String>> {
-    let row = |d: &super::verdict::Drift| {
+    let row = |d: &super::verdict::ParameterDrift| {
         let deviation = d.tolerances.map_or_else(|| "free".to_string(), |t| format!("{t:+.2}"));
         let far = d.tolerances.is_some_and(|t| t.abs() >= FAR);
         let deviation = if far { format!("<b class=\"far\">{deviation}</b>") } else { deviation };
@@ -192,7 +197,7 @@ fn drifts(v: &Verdict) -> Vec<Vec<String>> {
 }
 
 fn places(v: &Verdict) -> Vec<Vec<String>> {
-    let row = |p: &super::verdict::Located| {
+    let row = |p: &super::verdict::PlaceEvidence| {
         let node = escape(&p.node.join(", "));
         vec![escape(&p.place), p.kind.to_string(), format!("{:.1}", p.evidence), percent(p.share), node]
     };
@@ -213,8 +218,8 @@ fn unexplained(v: &Verdict) -> Vec<Vec<String>> {
 
 /// What was fitted, with the reason why it was not taken.
 fn weighed(v: &Verdict) -> Vec<Vec<String>> {
-    let digits = |v: Maybe, digits: usize| v.map_or_else(String::new, |v| format!("{v:.digits$}"));
-    let row = |w: &Weighed| {
+    let digits = |v: OptionalNumber, digits: usize| v.map_or_else(String::new, |v| format!("{v:.digits$}"));
+    let row = |w: &HypothesisAssessment| {
         let at: Vec<String> = w.places.iter().map(|p| escape(&p.place)).collect();
         vec![
             w.step.to_string(),
@@ -236,14 +241,14 @@ fn not_fitted(v: &Verdict) -> String {
 }
 
 /// How far what is left is from white noise of the size of the sensor's.
-fn white(problem: &Problem<'_>, left: &[Left]) -> Vec<Vec<String>> {
+fn white(problem: &DiagnosisProblem<'_>, left: &[ModelWhiteness]) -> Vec<Vec<String>> {
     let row = |name: &str, stage: &str, w: &Whiteness| {
         let coloured = w.neighbours.abs() > w.limit;
         let neighbours = format!("{:+.3}", w.neighbours);
         let neighbours = if coloured { format!("<b class=\"far\">{neighbours}</b>") } else { neighbours };
         vec![escape(name), stage.into(), format!("{:.2}", w.power), neighbours, format!("{:.3}", w.limit)]
     };
-    let signal = |(i, s): (usize, &Signal)| {
+    let signal = |(i, s): (usize, &SensorSignal)| {
         let models = left.iter().filter_map(move |(stage, left)| Some((left.get(i)?, stage)));
         models.map(|(w, stage)| row(&s.name, stage, w)).collect::<Vec<_>>()
     };
@@ -251,16 +256,16 @@ fn white(problem: &Problem<'_>, left: &[Left]) -> Vec<Vec<String>> {
 }
 
 /// Spectra of what is left of all signals, in decibels over the sensors' noise.
-fn spectrum(problem: &Problem<'_>, (stage, left): &Left) -> Panel {
+fn spectrum(problem: &DiagnosisProblem<'_>, (stage, left): &ModelWhiteness) -> FigurePanel {
     let level = |d: &f64| if *d > 0.0 { 10.0 * d.log10() } else { f64::NAN };
-    let series = |(i, (s, w)): (usize, (&Signal, &Whiteness))| {
+    let series = |(i, (s, w)): (usize, (&SensorSignal, &Whiteness))| {
         curve(&s.name, &w.frequencies, &w.density.iter().map(level).collect::<Vec<f64>>(), i)
     };
-    Panel {
+    FigurePanel {
         x_label: format!("frequency in Hz, {stage}"),
         y_label: "left, dB over the noise".into(),
         series: problem.signals.iter().zip(left).enumerate().map(series).collect(),
-        ..Panel::default()
+        ..FigurePanel::default()
     }
 }
 
@@ -268,7 +273,7 @@ fn spectrum(problem: &Problem<'_>, (stage, left): &Left) -> Panel {
 ///
 /// # Errors
 /// The recording that the model cannot follow, and when its simulation stops, s.
-pub fn compared(problem: &Problem<'_>, nominal: &Candidate) -> Result<Figure, (String, f64)> {
+pub fn compared(problem: &DiagnosisProblem<'_>, nominal: &CandidateModel) -> Result<Figure, (String, f64)> {
     let x = nominal.present();
     let mut panels = Vec::new();
     for (i, (file, recording)) in problem.files.iter().zip(&problem.train).enumerate() {
@@ -283,12 +288,12 @@ pub fn compared(problem: &Problem<'_>, nominal: &Candidate) -> Result<Figure, (S
 
 /// A recording, signal by signal, against the nominal model and the corrected one. `number`: among the recordings used.
 fn curves(
-    problem: &Problem<'_>,
-    found: &Found,
-    recording: &Recording,
+    problem: &DiagnosisProblem<'_>,
+    found: &EffectSearchResult,
+    recording: &RecordingData,
     number: Option<usize>,
     what: &str,
-) -> Vec<Panel> {
+) -> Vec<FigurePanel> {
     let (base, last) = (&found.base.fit, &found.last.fit);
     let of_nominal = base.candidate.errors(&at_nominal(problem, &base.candidate, &base.x), recording, number);
     let of_last = last.candidate.errors(&last.x, recording, number);
@@ -297,16 +302,16 @@ fn curves(
 
 /// A recording, signal by signal, with what models make of it: name, colour, what each leaves.
 fn beside(
-    problem: &Problem<'_>,
-    recording: &Recording,
-    models: &[(&str, usize, Option<Errors>)],
+    problem: &DiagnosisProblem<'_>,
+    recording: &RecordingData,
+    models: &[(&str, usize, Option<RecordingResiduals>)],
     what: &str,
-) -> Vec<Panel> {
-    let behind = |errors: &Errors| recording.len() - errors.first().map_or(0, Vec::len);
-    let panel = |(i, signal): (usize, &Signal)| {
+) -> Vec<FigurePanel> {
+    let behind = |errors: &RecordingResiduals| recording.len() - errors.first().map_or(0, Vec::len);
+    let panel = |(i, signal): (usize, &SensorSignal)| {
         let measured = &recording.signals[i];
         let (of_model, unit) = (problem.circuit.units.get(&signal.variable), &problem.shown[i].unit);
-        let units = of_model.and_then(|u| Unit::parse(u).ok()).zip(Unit::parse(unit).ok());
+        let units = of_model.and_then(|u| MeasurementUnit::parse(u).ok()).zip(MeasurementUnit::parse(unit).ok());
         let in_unit = |values: &[f64]| -> Vec<f64> {
             let convert = |v: &f64| units.as_ref().and_then(|(from, to)| from.convert(*v, to)).unwrap_or(*v);
             values.iter().map(convert).collect()
@@ -318,16 +323,16 @@ fn beside(
             let simulated: Vec<f64> = measured[from..].iter().zip(&errors[i]).map(|(y, e)| y - e).collect();
             series.push(curve(name, &recording.times[from..], &in_unit(&simulated), *colour));
         }
-        Panel {
+        FigurePanel {
             x_label: format!("time in s, {what}"),
             y_label: if unit.is_empty() { signal.name.clone() } else { format!("{} in {unit}", signal.name) },
             series,
-            ..Panel::default()
+            ..FigurePanel::default()
         }
     };
     problem.signals.iter().enumerate().map(panel).collect()
 }
 
-fn curve(name: &str, x: &[f64], y: &[f64], colour: usize) -> Series {
-    Series { name: name.into(), x: x.to_vec(), y: y.to_vec(), colour, ..Series::default() }
+fn curve(name: &str, x: &[f64], y: &[f64], colour: usize) -> PlotSeries {
+    PlotSeries { name: name.into(), x: x.to_vec(), y: y.to_vec(), colour, ..PlotSeries::default() }
 }

@@ -1,13 +1,13 @@
 //! Grids of shapes fitted to what the recordings can show: times to the sampling step, thresholds to the values that
 //! occur, forms over a potential to its range, frequencies to the lines that the nominal model has not.
 
-use super::circuit::{Circuit, same_kind};
-use super::data::Recording;
-use super::effects::{Coefficient, Shape};
-use super::hypotheses::{Attachment, Hypothesis, Signal, Site};
+use super::circuit::{CircuitTopology, same_kind};
+use super::data::RecordingData;
+use super::effects::{EffectCoefficient, ShapeParameter};
+use super::hypotheses::{AttachmentSite, EffectAttachment, Hypothesis, SensorSignal};
 use super::lines;
-use super::problem::Problem;
-use bramah_expr::units::Unit;
+use super::problem::DiagnosisProblem;
+use bramah_expr::units::MeasurementUnit;
 use std::collections::BTreeMap;
 
 /// The sampling step for which the effects' own grids of times are made, s.
@@ -35,20 +35,20 @@ const REPEATS: f64 = 2.0;
 const ATMOSPHERE: f64 = 101_325.0;
 
 /// A variable of a port: its potential, or what flows through it.
-type Variable = (usize, bool);
+type PortVariable = (usize, bool);
 /// What the nominal model says of such variables over all recordings, one after the other, SI.
-type Known = BTreeMap<Variable, Vec<f64>>;
+type NominalTrajectories = BTreeMap<PortVariable, Vec<f64>>;
 /// A limit of a signal is tried at these parts of the way from its least to its greatest size.
 const PARTS: [f64; 4] = [0.4, 0.6, 0.8, 0.97];
 
 /// Fits all grids.
-pub fn fit(problem: &mut Problem<'_>) {
+pub fn fit(problem: &mut DiagnosisProblem<'_>) {
     let slower = problem.step() / STEP;
-    let longest = problem.train.iter().map(Recording::duration).fold(0.0, f64::max);
+    let longest = problem.train.iter().map(RecordingData::duration).fold(0.0, f64::max);
     let potentials = potentials(problem);
     let sizes = sizes(problem);
     let times: Vec<&[f64]> = problem.train.iter().map(|r| &r.times[..]).collect();
-    let ranged = |a: &mut Attachment| {
+    let ranged = |a: &mut EffectAttachment| {
         range(a, &potentials, &times).is_none_or(|range| {
             let known = !range.is_empty();
             a.base.extend(range);
@@ -67,7 +67,7 @@ pub fn fit(problem: &mut Problem<'_>) {
         each_its_own(&mut h.coefficients, recordings);
         let site = h.attachments[0].site.clone();
         let size = size(&site, &sizes);
-        if let (Site::Command(_), Some((_, most))) = (&site, size) {
+        if let (AttachmentSite::Command(_), Some((_, most))) = (&site, size) {
             // the range of a command shows in the recordings only
             h.passes = Some(most);
         }
@@ -99,7 +99,7 @@ pub fn fit(problem: &mut Problem<'_>) {
                 }
             } else if let (true, Some((least, most))) = (shape.limit, size) {
                 shape.grid = PARTS.iter().map(|part| least + part * (most - least)).collect();
-            } else if let (true, Site::Command(name), Some((_, most))) = (shape.relative, &site, size) {
+            } else if let (true, AttachmentSite::Command(name), Some((_, most))) = (shape.relative, &site, size) {
                 let declared = problem.circuit.inputs.iter().find(|i| i.name == *name).and_then(|i| i.nominal);
                 shape.grid.iter_mut().for_each(|x| *x *= most / declared.unwrap_or(1.0));
             }
@@ -109,21 +109,21 @@ pub fn fit(problem: &mut Problem<'_>) {
 }
 
 /// Coefficients that differ from recording to recording, one for each.
-fn each_its_own(coefficients: &mut Vec<Coefficient>, recordings: usize) {
+fn each_its_own(coefficients: &mut Vec<EffectCoefficient>, recordings: usize) {
     let (own, mut all): (Vec<_>, Vec<_>) = coefficients.drain(..).partition(|c| c.recording.is_some());
-    let numbered = |k: usize| own.iter().map(move |c| Coefficient { recording: Some(k), ..c.clone() });
+    let numbered = |k: usize| own.iter().map(move |c| EffectCoefficient { recording: Some(k), ..c.clone() });
     all.extend((0..recordings).flat_map(numbered));
     *coefficients = all;
 }
 
 /// A corner that is left by most of what occurs, and may be as wide as all of it.
-fn corner(shape: &mut Shape, most: f64) {
+fn corner(shape: &mut ShapeParameter, most: f64) {
     shape.grid[0] = shape.grid[0].min(CORNER * most);
     shape.occurs = Some(most);
 }
 
 /// A time within what the recordings show: what takes longer than a part of them to fade is not seen to fade at all.
-fn time(shape: &mut Shape, slower: f64, longest: f64) {
+fn time(shape: &mut ShapeParameter, slower: f64, longest: f64) {
     let most = LASTING * longest;
     shape.grid.iter_mut().for_each(|x| *x = (*x * slower).min(most));
     let further = |x: &f64| Some(10.0 * x).filter(|x| *x <= LOOKED_FOR * longest);
@@ -134,7 +134,7 @@ fn time(shape: &mut Shape, slower: f64, longest: f64) {
 }
 
 /// Distances in decades from the effect's own, down to what no machine shows and up to what hinders every motion.
-fn distances(shape: &mut Shape, travel: f64) {
+fn distances(shape: &mut ShapeParameter, travel: f64) {
     let [least, most] = DISTANCES.map(|part| part * travel);
     let Some((low, high)) = extent(&shape.grid) else { return };
     let below = std::iter::successors(Some(0.1 * low), |x| Some(0.1 * x)).take_while(|x| *x >= least);
@@ -145,35 +145,42 @@ fn distances(shape: &mut Shape, travel: f64) {
 }
 
 /// Ports at which an effect acts, where a potential of theirs counts.
-fn ports(site: &Site) -> Vec<usize> {
+fn ports(site: &AttachmentSite) -> Vec<usize> {
     match *site {
-        Site::Node(p) => vec![p],
-        Site::Across(a, b) => vec![a, b],
+        AttachmentSite::Node(p) => vec![p],
+        AttachmentSite::Across(a, b) => vec![a, b],
         _ => Vec::new(),
     }
 }
 
 /// Whether a shape is the speed over which a friction changes sign, or falls.
-fn is_speed(shape: &Shape) -> bool {
+fn is_speed(shape: &ShapeParameter) -> bool {
     ["rad/s", "m/s"].iter().any(|u| same_kind(&shape.unit, u))
 }
 
 /// Whether a shape is the width over which something changes sign: it has one value, in the unit of what changes it.
-fn is_corner(shape: &Shape) -> bool {
+fn is_corner(shape: &ShapeParameter) -> bool {
     shape.grid.len() == 1 && !shape.relative && !shape.unit.is_empty()
 }
 
 /// Whether a shape is a distance of two bodies.
-fn is_distance(shape: &Shape) -> bool {
+fn is_distance(shape: &ShapeParameter) -> bool {
     ["rad", "m"].iter().any(|u| same_kind(&shape.unit, u))
 }
 
 /// Greatest size of what a corner's effect depends on: the potential of its place, or what flows through it; nothing where
 /// the shape has another unit, or nothing happens.
-fn greatest(shape: &Shape, site: &Site, potentials: &Known, circuit: &Circuit) -> Option<f64> {
+fn greatest(
+    shape: &ShapeParameter,
+    site: &AttachmentSite,
+    potentials: &NominalTrajectories,
+    circuit: &CircuitTopology,
+) -> Option<f64> {
     let (p, values) = match *site {
-        Site::Node(p) | Site::Across(p, _) => (&circuit.ports[p].potential, acting(site, potentials)?),
-        Site::Into(p) => (&circuit.ports[p].through, potentials.get(&(p, true))?.clone()),
+        AttachmentSite::Node(p) | AttachmentSite::Across(p, _) => {
+            (&circuit.ports[p].potential, acting(site, potentials)?)
+        }
+        AttachmentSite::Into(p) => (&circuit.ports[p].through, potentials.get(&(p, true))?.clone()),
         _ => return None,
     };
     let (least, most) = extent(&values)?;
@@ -181,7 +188,7 @@ fn greatest(shape: &Shape, site: &Site, potentials: &Known, circuit: &Circuit) -
 }
 
 /// How far a site travels, one side against the other where it has two; nothing where it stands still.
-fn travel(site: &Site, potentials: &Known) -> Option<f64> {
+fn travel(site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<f64> {
     let (least, most) = extent(&acting(site, potentials)?)?;
     Some((most - least).min(TURN)).filter(|t| *t > 0.0)
 }
@@ -193,44 +200,45 @@ fn extent(values: &[f64]) -> Option<(f64, f64)> {
 }
 
 /// Turns that a shaft makes in the nominal model.
-fn turned(site: &Site, potentials: &Known, circuit: &Circuit) -> Option<f64> {
-    let (Site::Node(p) | Site::Across(p, _)) = site else { return None };
+fn turned(site: &AttachmentSite, potentials: &NominalTrajectories, circuit: &CircuitTopology) -> Option<f64> {
+    let (AttachmentSite::Node(p) | AttachmentSite::Across(p, _)) = site else { return None };
     let angle = acting(site, potentials).filter(|_| same_kind(&circuit.ports[*p].potential.unit, "rad"))?;
     let (least, most) = extent(&angle)?;
     Some((most - least) / TURN)
 }
 
 /// Greatest speed at a site, of one side against the other where it has two; nothing where it stands still.
-fn fastest(site: &Site, potentials: &Known, times: &[&[f64]]) -> Option<f64> {
+fn fastest(site: &AttachmentSite, potentials: &NominalTrajectories, times: &[&[f64]]) -> Option<f64> {
     speeds(&acting(site, potentials)?, times).last().copied().filter(|v| *v > 0.0)
 }
 
 /// The potential of a site, of one side against the other where it has two.
-fn acting(site: &Site, potentials: &Known) -> Option<Vec<f64>> {
+fn acting(site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<Vec<f64>> {
     let of = |p: usize| potentials.get(&(p, false));
     match *site {
-        Site::Node(p) => of(p).cloned(),
-        Site::Across(a, b) => Some(of(a)?.iter().zip(of(b)?).map(|(a, b)| a - b).collect()),
+        AttachmentSite::Node(p) => of(p).cloned(),
+        AttachmentSite::Across(a, b) => Some(of(a)?.iter().zip(of(b)?).map(|(a, b)| a - b).collect()),
         _ => None,
     }
 }
 
-fn compared(h: &Hypothesis) -> impl Iterator<Item = Variable> {
-    let measured = |s: &Shape| s.threshold || s.level || s.order || is_speed(s) || is_corner(s) || is_distance(s);
+fn compared(h: &Hypothesis) -> impl Iterator<Item = PortVariable> {
+    let measured =
+        |s: &ShapeParameter| s.threshold || s.level || s.order || is_speed(s) || is_corner(s) || is_distance(s);
     let compared = h.shapes.iter().any(measured) || h.attachments.iter().any(|a| surroundings(a).is_some());
     let site = &h.attachments[0].site;
     let potentials = ports(site).into_iter().map(|p| (p, false));
-    let through = if let Site::Into(p) = site { Some((*p, true)) } else { None };
+    let through = if let AttachmentSite::Into(p) = site { Some((*p, true)) } else { None };
     potentials.chain(through).filter(move |_| compared)
 }
 
 /// The parameter of an effect that is the pressure of the surroundings.
-fn surroundings(a: &Attachment) -> Option<&String> {
+fn surroundings(a: &EffectAttachment) -> Option<&String> {
     a.effect.as_ref()?.surroundings.as_ref()
 }
 
 /// Counts pressures from the surroundings where the model does: no machine at rest has half of them.
-fn take_surroundings(a: &mut Attachment, potentials: &Known, times: &[&[f64]]) {
+fn take_surroundings(a: &mut EffectAttachment, potentials: &NominalTrajectories, times: &[&[f64]]) {
     let Some((name, pressure)) = surroundings(a).cloned().zip(acting(&a.site, potentials)) else { return };
     let begins = times.iter().scan(0, |from, t| {
         let first = pressure.get(*from).copied();
@@ -243,11 +251,11 @@ fn take_surroundings(a: &mut Attachment, potentials: &Known, times: &[&[f64]]) {
 }
 
 /// The variable whose range an effect takes.
-fn ranged(a: &Attachment) -> Option<Variable> {
+fn ranged(a: &EffectAttachment) -> Option<PortVariable> {
     let effect = a.effect.as_ref()?;
     let range = effect.range.as_ref()?;
     let i = &effect.interface;
-    if let (Site::Into(p), Some(through)) = (&a.site, &i.through) {
+    if let (AttachmentSite::Into(p), Some(through)) = (&a.site, &i.through) {
         return (through.name == range.of).then_some((*p, true));
     }
     let mut read = i.potential.iter().zip(ports(&a.site)).chain(i.sense.iter().zip(a.sense.iter().copied()));
@@ -256,7 +264,7 @@ fn ranged(a: &Attachment) -> Option<Variable> {
 
 /// The parameters that take the range of a potential, with their values; empty where it stands still or is not known,
 /// `None` for effects without.
-fn range(a: &Attachment, potentials: &Known, times: &[&[f64]]) -> Option<Vec<(String, String)>> {
+fn range(a: &EffectAttachment, potentials: &NominalTrajectories, times: &[&[f64]]) -> Option<Vec<(String, String)>> {
     let names = a.effect.as_ref()?.range.as_ref()?;
     let potential = ranged(a).and_then(|p| potentials.get(&p)).map_or(&[][..], Vec::as_slice);
     let values = if names.rate { speeds(potential, times) } else { potential.to_vec() };
@@ -283,21 +291,21 @@ fn speeds(potential: &[f64], times: &[&[f64]]) -> Vec<f64> {
 }
 
 /// Variables of all ports that a threshold, a corner or a range needs, as the nominal model has them; empty where it has none.
-fn potentials(problem: &Problem<'_>) -> Known {
-    let mut wanted: Vec<Variable> = problem.hypotheses.iter().flat_map(compared).collect();
+fn potentials(problem: &DiagnosisProblem<'_>) -> NominalTrajectories {
+    let mut wanted: Vec<PortVariable> = problem.hypotheses.iter().flat_map(compared).collect();
     wanted.extend(problem.hypotheses.iter().flat_map(|h| &h.attachments).filter_map(ranged));
     wanted.sort_unstable();
     wanted.dedup();
-    let signal = |(i, &(p, flows)): (usize, &Variable)| {
+    let signal = |(i, &(p, flows)): (usize, &PortVariable)| {
         let port = &problem.circuit.ports[p];
         let own = if flows { &port.through } else { &port.potential };
-        Signal { name: format!("potential_{i}"), variable: format!("{}.{}", port.name, own.name), scale: 1.0 }
+        SensorSignal { name: format!("potential_{i}"), variable: format!("{}.{}", port.name, own.name), scale: 1.0 }
     };
-    let signals: Vec<Signal> = wanted.iter().enumerate().map(signal).collect();
+    let signals: Vec<SensorSignal> = wanted.iter().enumerate().map(signal).collect();
     let found = if wanted.is_empty() { None } else { problem.observe(&signals) };
-    let in_si = |((p, flows), mut values): (Variable, Vec<f64>)| {
+    let in_si = |((p, flows), mut values): (PortVariable, Vec<f64>)| {
         let port = &problem.circuit.ports[p];
-        let unit = Unit::parse(if flows { &port.through.unit } else { &port.potential.unit });
+        let unit = MeasurementUnit::parse(if flows { &port.through.unit } else { &port.potential.unit });
         let (factor, offset) = unit.map_or((1.0, 0.0), |u| (u.factor(), u.offset));
         values.iter_mut().for_each(|v| *v = *v * factor + offset);
         ((p, flows), values)
@@ -306,10 +314,10 @@ fn potentials(problem: &Problem<'_>) -> Known {
 }
 
 /// What a threshold at this site is compared with, sorted.
-fn values(shape: &Shape, site: &Site, potentials: &Known) -> Option<Vec<f64>> {
+fn values(shape: &ShapeParameter, site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<Vec<f64>> {
     let mut values = match *site {
         _ if !shape.threshold && !shape.level => return None,
-        Site::Across(p, _) if shape.level => acting(&Site::Node(p), potentials)?,
+        AttachmentSite::Across(p, _) if shape.level => acting(&AttachmentSite::Node(p), potentials)?,
         _ => acting(site, potentials)?,
     };
     values.retain(|v| v.is_finite());
@@ -318,7 +326,7 @@ fn values(shape: &Shape, site: &Site, potentials: &Known) -> Option<Vec<f64>> {
 }
 
 /// Least and greatest size of each signal, of each input, and of each signal inside the model as the nominal one has it.
-fn sizes(problem: &Problem<'_>) -> BTreeMap<String, (f64, f64)> {
+fn sizes(problem: &DiagnosisProblem<'_>) -> BTreeMap<String, (f64, f64)> {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let start = (f64::INFINITY, 0.0_f64);
         values.filter(|v| v.is_finite()).fold(start, |(least, most), v| (v.abs().min(least), v.abs().max(most)))
@@ -333,8 +341,10 @@ fn sizes(problem: &Problem<'_>) -> BTreeMap<String, (f64, f64)> {
         sizes.insert(input.name.clone(), range(&mut values));
     }
     let links = problem.circuit.links.iter().map(|l| l.signal.name.clone());
-    let inside: Vec<Signal> =
-        links.enumerate().map(|(i, variable)| Signal { name: format!("inside_{i}"), variable, scale: 1.0 }).collect();
+    let inside: Vec<SensorSignal> = links
+        .enumerate()
+        .map(|(i, variable)| SensorSignal { name: format!("inside_{i}"), variable, scale: 1.0 })
+        .collect();
     let known = if inside.is_empty() { None } else { problem.observe(&inside) };
     for (s, values) in inside.iter().zip(known.unwrap_or_default()) {
         sizes.insert(s.variable.clone(), range(&mut values.into_iter()));
@@ -343,9 +353,9 @@ fn sizes(problem: &Problem<'_>) -> BTreeMap<String, (f64, f64)> {
     sizes
 }
 
-fn size(site: &Site, sizes: &BTreeMap<String, (f64, f64)>) -> Option<(f64, f64)> {
+fn size(site: &AttachmentSite, sizes: &BTreeMap<String, (f64, f64)>) -> Option<(f64, f64)> {
     match site {
-        Site::Sensor(name) | Site::Command(name) => sizes.get(name).copied(),
+        AttachmentSite::Sensor(name) | AttachmentSite::Command(name) => sizes.get(name).copied(),
         _ => None,
     }
 }

@@ -1,20 +1,20 @@
 //! From a study to a problem.
 
 use super::capacity;
-use super::circuit::{self, Circuit};
-use super::data::Recording;
-use super::effects::{self, Effect};
-use super::hypotheses::{self, Free, Hypothesis, Signal};
+use super::circuit::{self, CircuitTopology};
+use super::data::RecordingData;
+use super::effects::{self, EffectModel};
+use super::hypotheses::{self, Hypothesis, SensorSignal, UncertainParameter};
 use super::mistakes::mistakes;
-use super::problem::{Problem, Shown, Tolerance};
+use super::problem::{DiagnosisProblem, SignalDisplayUnit, ToleranceParameter};
 use super::shapes;
 use bramah_analysis::noise;
-use bramah_analysis::study::{Bound, BoundSignal, Knowledge, Role, Study, full_scales};
+use bramah_analysis::study::{BoundSignal, BoundStudy, DataSheetTolerance, RecordingRole, Study, full_scales};
 use bramah_expr::VarId;
-use bramah_expr::units::Unit;
-use bramah_model::flat::{FlatModel, Type, Variability};
+use bramah_expr::units::MeasurementUnit;
+use bramah_model::flat::{FlatModel, ScalarType, Variability};
 use bramah_solve::Interpolation;
-use bramah_solve::lower::{Options, lower};
+use bramah_solve::lower::{LoweringOptions, lower};
 use bramah_syntax::diag::{Code, Diagnostic, Sources};
 use bramah_syntax::world::World;
 use std::collections::BTreeMap;
@@ -31,11 +31,11 @@ const ACCURACY: f64 = 3e-3;
 const SAMPLED: &str = "the diagnosis cannot follow a model that samples";
 
 /// A study with its model read.
-pub struct Question<'a> {
+pub struct DiagnosisStudy<'a> {
     /// What is diagnosed.
-    pub problem: Problem<'a>,
+    pub problem: DiagnosisProblem<'a>,
     /// The study tied to the model.
-    pub bound: Bound,
+    pub bound: BoundStudy,
     /// The nominal model.
     flat: FlatModel,
     /// Warnings.
@@ -43,15 +43,15 @@ pub struct Question<'a> {
 }
 
 /// Recordings that take no part in fitting.
-pub struct Held {
+pub struct HoldoutData {
     /// Their names, for messages alone.
     pub files: Vec<String>,
     /// What was recorded.
-    pub recordings: Vec<Recording>,
+    pub recordings: Vec<RecordingData>,
 }
 
 /// Why a study cannot be used, with the texts its messages point into.
-pub struct Unusable {
+pub struct StudyError {
     /// What is wrong.
     pub diagnostics: Vec<Diagnostic>,
     /// Texts of the model, if the trouble is there.
@@ -60,27 +60,27 @@ pub struct Unusable {
     pub model: bool,
 }
 
-impl Unusable {
+impl StudyError {
     fn study(diagnostics: Vec<Diagnostic>) -> Self {
-        Unusable { diagnostics, sources: None, model: false }
+        StudyError { diagnostics, sources: None, model: false }
     }
 
-    fn model<T>(outcome: bramah_model::compile::Outcome<T>) -> Self {
-        Unusable { diagnostics: outcome.diagnostics, sources: Some(outcome.sources), model: true }
+    fn model<T>(outcome: bramah_model::compile::CompileOutcome<T>) -> Self {
+        StudyError { diagnostics: outcome.diagnostics, sources: Some(outcome.sources), model: true }
     }
 }
 
 /// Reads everything that a study names but its held recordings.
 ///
 /// # Errors
-/// [`Unusable`].
+/// [`StudyError`].
 pub fn question<'a>(
     world: &'a dyn World,
     study: &Study,
     data: Option<&Path>,
     sources: &mut Sources,
-) -> Result<Question<'a>, Unusable> {
-    let nominal = Nominal::read(world, study)?;
+) -> Result<DiagnosisStudy<'a>, StudyError> {
+    let nominal = NominalModel::read(world, study)?;
     let (train, warnings) = nominal.train(world, data, sources)?;
     nominal.question(world, study, train, warnings)
 }
@@ -89,14 +89,14 @@ pub fn question<'a>(
 /// shows. Noise is the sensors' accuracy, where the study says none a part of their range.
 ///
 /// # Errors
-/// [`Unusable`].
+/// [`StudyError`].
 pub fn planned<'a>(
     world: &'a dyn World,
     study: &Study,
     data: Option<&Path>,
     sources: &mut Sources,
-) -> Result<Question<'a>, Unusable> {
-    let mut nominal = Nominal::read(world, study)?;
+) -> Result<DiagnosisStudy<'a>, StudyError> {
+    let mut nominal = NominalModel::read(world, study)?;
     let signals = std::mem::take(&mut nominal.bound.signals);
     let (train, warnings) = nominal.train(world, data, sources)?;
     nominal.bound.signals = signals;
@@ -112,27 +112,27 @@ pub fn planned<'a>(
 }
 
 /// The nominal model of a study, and the study tied to it.
-struct Nominal {
+struct NominalModel {
     flat: FlatModel,
     dae: bramah_model::structure::Dae,
-    bound: Bound,
+    bound: BoundStudy,
     request: bramah_model::compile::Request,
 }
 
-impl Nominal {
-    fn read(world: &dyn World, study: &Study) -> Result<Self, Unusable> {
+impl NominalModel {
+    fn read(world: &dyn World, study: &Study) -> Result<Self, StudyError> {
         let request = study.request();
         let outcome = bramah_model::compile::sort(world, &request);
-        let Some((flat, _, dae)) = outcome.value else { return Err(Unusable::model(outcome)) };
+        let Some((flat, _, dae)) = outcome.value else { return Err(StudyError::model(outcome)) };
         if let Some(sample) = dae.samples.first() {
             let place = bramah_solve::at_origin(&dae, Code::BadStudy, SAMPLED, sample.origin, "reads at its own times");
             let help = "record what the controller commands and make that an input of the model; `bramah identify` follows samples";
             let (diagnostics, sources) = (vec![place.help(help)], Some(outcome.sources));
-            return Err(Unusable { diagnostics, sources, model: true });
+            return Err(StudyError { diagnostics, sources, model: true });
         }
         let checked = study.bind(&flat);
-        let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
-        Ok(Nominal { flat, dae, bound, request })
+        let Some(bound) = checked.value else { return Err(StudyError::study(checked.diagnostics)) };
+        Ok(NominalModel { flat, dae, bound, request })
     }
 
     /// The train recordings, with warnings.
@@ -141,11 +141,11 @@ impl Nominal {
         world: &dyn World,
         data: Option<&Path>,
         sources: &mut Sources,
-    ) -> Result<(Vec<bramah_analysis::study::Recording>, Vec<Diagnostic>), Unusable> {
-        let checked = self.bound.load(world, data, Role::Train, sources);
+    ) -> Result<(Vec<bramah_analysis::study::Recording>, Vec<Diagnostic>), StudyError> {
+        let checked = self.bound.load(world, data, RecordingRole::Train, sources);
         match checked.value {
             Some(train) => Ok((train, checked.diagnostics)),
-            None => Err(Unusable::study(checked.diagnostics)),
+            None => Err(StudyError::study(checked.diagnostics)),
         }
     }
 
@@ -155,10 +155,10 @@ impl Nominal {
         world: &dyn World,
         study: &Study,
         mut train: Vec<bramah_analysis::study::Recording>,
-    ) -> Result<Vec<bramah_analysis::study::Recording>, Unusable> {
+    ) -> Result<Vec<bramah_analysis::study::Recording>, StudyError> {
         let signals = signals(&self.flat, &self.bound, &vec![1.0; self.bound.signals.len()]);
         let offer = offer(world, study, &signals, &[])?;
-        let mut problem = Problem {
+        let mut problem = DiagnosisProblem {
             world,
             request: self.request.clone(),
             folder: None,
@@ -177,7 +177,7 @@ impl Nominal {
         if problem.show().is_none() {
             let text = "the nominal model does not reach the end of the planned recordings";
             let help = "try `bramah simulate` with these inputs";
-            return Err(Unusable::study(vec![Diagnostic::new(Code::BadData, text.to_string()).help(help)]));
+            return Err(StudyError::study(vec![Diagnostic::new(Code::BadData, text.to_string()).help(help)]));
         }
         for (own, shown) in train.iter_mut().zip(&problem.train) {
             own.signals = shown.signals.iter().map(|s| s.to_vec()).collect();
@@ -191,8 +191,8 @@ impl Nominal {
         study: &Study,
         train: Vec<bramah_analysis::study::Recording>,
         mut diagnostics: Vec<Diagnostic>,
-    ) -> Result<Question<'a>, Unusable> {
-        let Nominal { flat, dae, bound, request } = self;
+    ) -> Result<DiagnosisStudy<'a>, StudyError> {
+        let NominalModel { flat, dae, bound, request } = self;
         let full_scale = full_scales(&bound, &train);
         let signals = signals(&flat, &bound, &full_scale);
         let tolerances = tolerances(&flat, &bound, &parameter_values(dae));
@@ -202,9 +202,9 @@ impl Nominal {
         disturbances.retain(|d| d.attachments.len() == 1);
         let shown = bound.signals.iter().map(shown).collect();
         let files = train.iter().map(|r| r.file.clone()).collect();
-        let train: Vec<Recording> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
+        let train: Vec<RecordingData> = train.into_iter().map(|r| recording(&flat, &bound, r)).collect();
         let noise_floor = full_scale.iter().enumerate().map(|(i, scale)| floor(&train, i, *scale)).collect();
-        let mut problem = Problem {
+        let mut problem = DiagnosisProblem {
             world,
             request,
             folder: offer.folder,
@@ -225,7 +225,7 @@ impl Nominal {
         capacity::bound(&mut problem);
         let mistakes = mistakes(&problem, &offer.effects);
         problem.hypotheses.extend(mistakes);
-        Ok(Question { problem, bound, flat, diagnostics })
+        Ok(DiagnosisStudy { problem, bound, flat, diagnostics })
     }
 }
 
@@ -233,12 +233,12 @@ impl Nominal {
 /// with a range of 1.
 ///
 /// # Errors
-/// [`Unusable`].
-pub fn proposed(world: &dyn World, study: &Study) -> Result<(Vec<Hypothesis>, Vec<Diagnostic>), Unusable> {
+/// [`StudyError`].
+pub fn proposed(world: &dyn World, study: &Study) -> Result<(Vec<Hypothesis>, Vec<Diagnostic>), StudyError> {
     let outcome = bramah_model::compile::flatten(world, &study.request());
-    let Some(f) = outcome.value else { return Err(Unusable::model(outcome)) };
+    let Some(f) = outcome.value else { return Err(StudyError::model(outcome)) };
     let checked = study.bind(&f.flat);
-    let Some(bound) = checked.value else { return Err(Unusable::study(checked.diagnostics)) };
+    let Some(bound) = checked.value else { return Err(StudyError::study(checked.diagnostics)) };
     let ranges: Vec<f64> = bound.signals.iter().map(|s| s.full_scale.unwrap_or(1.0)).collect();
     let written = |v: VarId| f.flat.variables[v.index()].binding.and_then(|b| f.flat.exprs.as_num(b)).unwrap_or(0.0);
     let free = free(&stated(&f.flat, &bound, &written));
@@ -247,81 +247,87 @@ pub fn proposed(world: &dyn World, study: &Study) -> Result<(Vec<Hypothesis>, Ve
 }
 
 /// What the network of a study's model offers.
-struct Offer {
-    circuit: Circuit,
+struct HypothesisSpace {
+    circuit: CircuitTopology,
     folder: Option<PathBuf>,
     hypotheses: Vec<Hypothesis>,
     /// The whole catalogue.
-    effects: Vec<Arc<Effect>>,
+    effects: Vec<Arc<EffectModel>>,
     /// Disturbances, before they are attached.
-    sources: Vec<Arc<Effect>>,
+    sources: Vec<Arc<EffectModel>>,
     diagnostics: Vec<Diagnostic>,
 }
 
-fn offer(world: &dyn World, study: &Study, signals: &[Signal], free: &[Free]) -> Result<Offer, Unusable> {
+fn offer(
+    world: &dyn World,
+    study: &Study,
+    signals: &[SensorSignal],
+    free: &[UncertainParameter],
+) -> Result<HypothesisSpace, StudyError> {
     let outcome = circuit::circuit(world, &study.request());
-    let Some(circuit) = outcome.value else { return Err(Unusable::model(outcome)) };
+    let Some(circuit) = outcome.value else { return Err(StudyError::model(outcome)) };
     let folder = study.effects.folder.as_ref().map(|f| study.folder.join(f));
     let read = effects::catalogue(world, folder.as_deref());
-    let Some(catalogue) = read.value else { return Err(Unusable::model(read)) };
+    let Some(catalogue) = read.value else { return Err(StudyError::model(read)) };
     let mut hypotheses = hypotheses::hypotheses(&circuit, &catalogue.effects, signals, free);
     hypotheses::narrow(&mut hypotheses, &study.effects);
     let measured = study.inputs.iter().filter(|i| i.measured).map(|i| i.name.as_str()).collect::<Vec<_>>();
     hypotheses::without_commands(&mut hypotheses, &circuit, &measured);
     let (effects, sources) = (catalogue.effects, catalogue.disturbances);
-    Ok(Offer { circuit, folder, hypotheses, effects, sources, diagnostics: read.diagnostics })
+    Ok(HypothesisSpace { circuit, folder, hypotheses, effects, sources, diagnostics: read.diagnostics })
 }
 
-fn signals(flat: &FlatModel, bound: &Bound, ranges: &[f64]) -> Vec<Signal> {
+fn signals(flat: &FlatModel, bound: &BoundStudy, ranges: &[f64]) -> Vec<SensorSignal> {
     let name = |v: VarId| flat.variables[v.index()].name.clone();
-    let signal = |(s, &scale): (&BoundSignal, &f64)| Signal { name: s.name.clone(), variable: name(s.variable), scale };
+    let signal =
+        |(s, &scale): (&BoundSignal, &f64)| SensorSignal { name: s.name.clone(), variable: name(s.variable), scale };
     bound.signals.iter().zip(ranges).map(signal).collect()
 }
 
 /// The unit of a signal's column: differences are converted, so that the zero of a temperature does not matter.
-fn shown(signal: &BoundSignal) -> Shown {
-    let own = Shown { unit: signal.unit.clone(), factor: 1.0 };
+fn shown(signal: &BoundSignal) -> SignalDisplayUnit {
+    let own = SignalDisplayUnit { unit: signal.unit.clone(), factor: 1.0 };
     let Some(unit) = &signal.entry.unit else { return own };
-    let (Ok(from), Ok(to)) = (Unit::parse(&signal.unit), Unit::parse(unit)) else { return own };
+    let (Ok(from), Ok(to)) = (MeasurementUnit::parse(&signal.unit), MeasurementUnit::parse(unit)) else { return own };
     match (from.convert(1.0, &to), from.convert(0.0, &to)) {
-        (Some(one), Some(zero)) => Shown { unit: unit.clone(), factor: one - zero },
+        (Some(one), Some(zero)) => SignalDisplayUnit { unit: unit.clone(), factor: one - zero },
         _ => own,
     }
 }
 
-fn free(tolerances: &[Tolerance]) -> Vec<Free> {
-    tolerances.iter().map(|t| Free { name: t.name.clone(), nominal: t.nominal, sigma: t.sigma }).collect()
+fn free(tolerances: &[ToleranceParameter]) -> Vec<UncertainParameter> {
+    tolerances.iter().map(|t| UncertainParameter { name: t.name.clone(), nominal: t.nominal, sigma: t.sigma }).collect()
 }
 
-impl Question<'_> {
+impl DiagnosisStudy<'_> {
     /// Reads the held recordings.
     ///
     /// # Errors
     /// What is wrong with them.
-    pub fn held(&self, data: Option<&Path>, sources: &mut Sources) -> Result<Held, Vec<Diagnostic>> {
-        let checked = self.bound.load(self.problem.world, data, Role::Held, sources);
+    pub fn held(&self, data: Option<&Path>, sources: &mut Sources) -> Result<HoldoutData, Vec<Diagnostic>> {
+        let checked = self.bound.load(self.problem.world, data, RecordingRole::Held, sources);
         let found = checked.value.ok_or(checked.diagnostics)?;
         let files = found.iter().map(|r| r.file.clone()).collect();
         let recordings = found.into_iter().map(|r| recording(&self.flat, &self.bound, r)).collect();
-        Ok(Held { files, recordings })
+        Ok(HoldoutData { files, recordings })
     }
 }
 
 /// Noise of a signal, never quite zero.
-fn floor(train: &[Recording], signal: usize, full_scale: f64) -> f64 {
+fn floor(train: &[RecordingData], signal: usize, full_scale: f64) -> f64 {
     let samples: Vec<&[f64]> = train.iter().map(|r| &*r.signals[signal]).collect();
     noise::floor(&samples).max(1e-9 * full_scale.abs())
 }
 
 fn parameter_values(dae: bramah_model::structure::Dae) -> impl Fn(VarId) -> f64 {
-    let system = lower(Arc::new(dae), &Options::INTERPRETED);
+    let system = lower(Arc::new(dae), &LoweringOptions::INTERPRETED);
     let mut values = system.layout.values();
     system.evaluate_parameters(&mut values, &[]);
     move |v| values[system.layout.var(v)]
 }
 
 /// Inputs in the order of the model; those that the study leaves out keep their start value.
-fn recording(flat: &FlatModel, bound: &Bound, r: bramah_analysis::study::Recording) -> Recording {
+fn recording(flat: &FlatModel, bound: &BoundStudy, r: bramah_analysis::study::Recording) -> RecordingData {
     let count = r.times.len();
     let mut inputs: Vec<Arc<[f64]>> = Vec::new();
     let mut linear = Vec::new();
@@ -339,28 +345,28 @@ fn recording(flat: &FlatModel, bound: &Bound, r: bramah_analysis::study::Recordi
         }
     }
     let signals = r.signals.iter().map(|s| Arc::from(&s[..])).collect();
-    Recording { times: Arc::from(&r.times[..]), inputs, linear, signals }
+    RecordingData { times: Arc::from(&r.times[..]), inputs, linear, signals }
 }
 
 /// Tolerances that the study states.
-fn stated(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec<Tolerance> {
+fn stated(flat: &FlatModel, bound: &BoundStudy, value: &impl Fn(VarId) -> f64) -> Vec<ToleranceParameter> {
     let mut all = Vec::new();
     for p in &bound.parameters {
         let nominal = value(p.variable);
         let sigma = match p.knowledge {
-            Knowledge::Exact => continue,
-            Knowledge::Relative(part) => part * nominal.abs(),
-            Knowledge::Absolute(value) => value,
-            Knowledge::Free => nominal.abs().max(1e-12),
+            DataSheetTolerance::Exact => continue,
+            DataSheetTolerance::Relative(part) => part * nominal.abs(),
+            DataSheetTolerance::Absolute(value) => value,
+            DataSheetTolerance::Free => nominal.abs().max(1e-12),
         };
         let t = tolerance(flat, p.variable, nominal, sigma, (p.min, p.max), false);
-        all.push(Tolerance { free: matches!(p.knowledge, Knowledge::Free), ..t });
+        all.push(ToleranceParameter { free: matches!(p.knowledge, DataSheetTolerance::Free), ..t });
     }
     all
 }
 
 /// Those of the study; where it states none, assumed ones of all parameters on which others do not depend.
-fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) -> Vec<Tolerance> {
+fn tolerances(flat: &FlatModel, bound: &BoundStudy, value: &impl Fn(VarId) -> f64) -> Vec<ToleranceParameter> {
     if !bound.parameters.is_empty() {
         return stated(flat, bound, value);
     }
@@ -370,7 +376,7 @@ fn tolerances(flat: &FlatModel, bound: &Bound, value: &impl Fn(VarId) -> f64) ->
         if variable.hidden
             || !physical
             || variable.variability != Variability::Parameter
-            || variable.ty != Type::Real
+            || variable.ty != ScalarType::Real
             || !flat.is_root(v)
         {
             continue;
@@ -390,13 +396,13 @@ fn tolerance(
     sigma: f64,
     bounds: (Option<f64>, Option<f64>),
     assumed: bool,
-) -> Tolerance {
+) -> ToleranceParameter {
     let variable = &flat.variables[v.index()];
     let number = |e: Option<bramah_expr::ExprId>| e.and_then(|e| flat.exprs.as_num(e)).filter(|b| b.is_finite());
     // a parameter that must be positive stays so: a hundredth of its value is the least
     let declared = number(variable.min).map(|m| if m == 0.0 && nominal > 0.0 { 0.01 * nominal } else { m });
     let least = if nominal > 0.0 { Some(0.01 * nominal) } else { None };
-    Tolerance {
+    ToleranceParameter {
         name: variable.name.clone(),
         unit: variable.unit.as_deref().unwrap_or("").to_string(),
         nominal,

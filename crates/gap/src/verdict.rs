@@ -5,12 +5,12 @@ mod conclude;
 pub use conclude::conclude;
 
 use super::hypotheses::Hypothesis;
-use super::problem::Shown;
+use super::problem::SignalDisplayUnit;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// A number that may not be known.
-pub type Maybe = Option<f64>;
+pub type OptionalNumber = Option<f64>;
 
 /// Everything that the diagnosis says.
 #[derive(Clone, Debug, Serialize)]
@@ -27,24 +27,24 @@ pub struct Verdict {
     /// Gross errors of the recordings.
     pub recording: Vec<RecordingError>,
     /// Places where the two part, most certain first; before anything is named.
-    pub places: Vec<Located>,
+    pub places: Vec<PlaceEvidence>,
     /// Effects in the order of acceptance.
-    pub effects: Vec<Effect>,
+    pub effects: Vec<VerdictEffect>,
     /// What the judge says of the effect, if it is shown because it was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub asked: Option<String>,
     /// Every free parameter.
-    pub drifts: Vec<Drift>,
+    pub drifts: Vec<ParameterDrift>,
     /// The gap, raw.
-    pub gap: Gaps,
+    pub gap: GapSummary,
     /// Part of the held gap that is closed by tolerances and effects.
-    pub closed: Maybe,
+    pub closed: OptionalNumber,
     /// Part that effects close beyond tolerances.
-    pub closed_by_effects: Maybe,
+    pub closed_by_effects: OptionalNumber,
     /// Every hypothesis that was weighed, step by step, with the reason why it was not taken.
-    pub weighed: Vec<Weighed>,
+    pub weighed: Vec<HypothesisAssessment>,
     /// What is left.
-    pub unexplained: Unexplained,
+    pub unexplained: UnexplainedGap,
     /// Signals at which the last model leaves a gap wider than three times the noise and a quarter of a per cent of the
     /// range.
     pub open: Vec<OpenGap>,
@@ -69,7 +69,7 @@ pub struct RecordingError {
 
 /// A place with its evidence.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Located {
+pub struct PlaceEvidence {
     /// Its name.
     pub place: String,
     /// Everything that is the same place.
@@ -84,7 +84,7 @@ pub struct Located {
 
 /// A place by name.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Spot {
+pub struct PlaceName {
     /// Its name.
     pub place: String,
     /// Everything that is the same place.
@@ -93,7 +93,7 @@ pub struct Spot {
 
 /// An accepted effect.
 #[derive(Clone, Debug, Serialize)]
-pub struct Effect {
+pub struct VerdictEffect {
     /// Class of the effect.
     pub effect: String,
     /// Its family.
@@ -101,26 +101,26 @@ pub struct Effect {
     /// What it does, in words.
     pub description: String,
     /// Where.
-    pub places: Vec<Spot>,
+    pub places: Vec<PlaceName>,
     /// What flows through it at its first place; nothing for signals and parameters.
-    pub flow: Option<Flow>,
+    pub flow: Option<EffectFlow>,
     /// Evidence of left-out data and tolerances when it was taken, nats.
     pub evidence: f64,
     /// Statistic over blocks of left-out data: mean gain over its standard error.
     pub t: f64,
     /// Part of the held gap (behind tolerances) that it closes alone.
-    pub closes_alone: Maybe,
+    pub closes_alone: OptionalNumber,
     /// Part that opens again without it.
-    pub closes_last: Maybe,
+    pub closes_last: OptionalNumber,
     /// Coefficients and shapes.
-    pub parameters: BTreeMap<String, Estimate>,
+    pub parameters: BTreeMap<String, ParameterEstimate>,
     /// What the data cannot tell from it.
-    pub indistinguishable: Vec<Alternative>,
+    pub indistinguishable: Vec<AlternativeExplanation>,
 }
 
 /// Force, torque, flow, current or heat through an effect over the recordings used, in the model with all effects.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Flow {
+pub struct EffectFlow {
     /// Greatest size.
     pub largest: f64,
     /// Root of the mean square.
@@ -131,7 +131,7 @@ pub struct Flow {
 
 /// A value with its uncertainty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Estimate {
+pub struct ParameterEstimate {
     /// Value.
     pub value: f64,
     /// One standard deviation.
@@ -140,12 +140,12 @@ pub struct Estimate {
     pub unit: String,
     /// How the study speaks of it, where that is in another unit.
     #[serde(skip)]
-    pub shown: Option<Shown>,
+    pub shown: Option<SignalDisplayUnit>,
 }
 
 /// A hypothesis that was weighed; what left-out data say of it where it was fitted.
 #[derive(Clone, Debug, Serialize)]
-pub struct Weighed {
+pub struct HypothesisAssessment {
     /// The step: 1, 2, ...
     pub step: usize,
     /// Class of the effect.
@@ -153,33 +153,33 @@ pub struct Weighed {
     /// Its family.
     pub family: String,
     /// Where.
-    pub places: Vec<Spot>,
+    pub places: Vec<PlaceName>,
     /// Gap of left-out data that it leaves, in parts of full scale, noise taken out.
-    pub gap: Maybe,
+    pub gap: OptionalNumber,
     /// t statistic over the blocks.
-    pub t: Maybe,
+    pub t: OptionalNumber,
     /// Evidence, nats.
-    pub evidence: Maybe,
+    pub evidence: OptionalNumber,
     /// Why it was not taken.
     pub refused: Option<String>,
 }
 
 /// Another explanation that the data cannot exclude.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Alternative {
+pub struct AlternativeExplanation {
     /// Class of the effect.
     pub effect: String,
     /// Its family.
     pub family: String,
     /// Where.
-    pub places: Vec<Spot>,
+    pub places: Vec<PlaceName>,
     /// Nats behind the best.
     pub behind: f64,
 }
 
 /// A free parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Drift {
+pub struct ParameterDrift {
     /// Its name.
     pub parameter: String,
     /// Of the nominal model.
@@ -189,23 +189,23 @@ pub struct Drift {
     /// One standard deviation.
     pub std: f64,
     /// Deviation in tolerances; nothing where it has none.
-    pub tolerances: Maybe,
+    pub tolerances: OptionalNumber,
 }
 
 /// Gaps on held and train recordings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Gaps {
+pub struct GapSummary {
     /// On recordings that were not used.
-    pub held: Side,
+    pub held: RoleGaps,
     /// On those that were.
-    pub train: Side,
+    pub train: RoleGaps,
 }
 
 /// Gaps on one kind of recordings.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Side {
+pub struct RoleGaps {
     /// RMS over the signals.
-    pub total: Columns,
+    pub total: ModelGaps,
     /// Per signal.
     pub signals: BTreeMap<String, SignalGap>,
 }
@@ -215,11 +215,11 @@ pub struct Side {
 pub struct SignalGap {
     /// In parts of the sensor's full scale.
     #[serde(flatten)]
-    pub of_full_scale: Columns,
+    pub of_full_scale: ModelGaps,
     /// In parts of the range of these recordings.
-    pub of_range: Columns,
+    pub of_range: ModelGaps,
     /// In the unit.
-    pub rms: Columns,
+    pub rms: ModelGaps,
     /// The unit of the study's column.
     pub unit: String,
     /// How far the signal moves in these recordings, in the unit.
@@ -230,24 +230,24 @@ pub struct SignalGap {
 
 /// The gap of three models; nothing where a run stops early.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Columns {
+pub struct ModelGaps {
     /// As the study gives it.
-    pub nominal: Maybe,
+    pub nominal: OptionalNumber,
     /// Parameters moved within their tolerances.
-    pub tolerances: Maybe,
+    pub tolerances: OptionalNumber,
     /// With the effects.
-    pub effects: Maybe,
+    pub effects: OptionalNumber,
 }
 
 /// What is left.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Unexplained {
+pub struct UnexplainedGap {
     /// Of the nominal gap.
-    pub share: Maybe,
+    pub share: OptionalNumber,
     /// Where, if it can be told.
     pub place: Option<String>,
     /// What it follows, if anything.
-    pub shape: Option<Vec<Term>>,
+    pub shape: Option<Vec<MissingTerm>>,
 }
 
 /// A signal at which the gap stays open.
@@ -256,9 +256,9 @@ pub struct OpenGap {
     /// The signal.
     pub signal: String,
     /// RMS that the last model leaves, in the unit; nothing where its run stops early.
-    pub rms: Maybe,
+    pub rms: OptionalNumber,
     /// The same as part of the recordings' range.
-    pub of_range: Maybe,
+    pub of_range: OptionalNumber,
     /// The unit of the study's column.
     pub unit: String,
     /// Recordings in which it is open, of how many.
@@ -267,7 +267,7 @@ pub struct OpenGap {
 
 /// A term of the missing through variable.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Term {
+pub struct MissingTerm {
     /// What the missing quantity follows.
     pub term: String,
     /// Part of the gap of left-out train data that it closes.
@@ -283,17 +283,17 @@ pub(super) const EXCITING: &str =
     "more excitation: steps of the inputs over their whole range, then slow triangles through zero";
 
 /// One gap over another, where both are known.
-pub(super) fn ratio(a: Maybe, b: Maybe) -> Maybe {
+pub(super) fn ratio(a: OptionalNumber, b: OptionalNumber) -> OptionalNumber {
     let b = b.filter(|b| *b > 0.0)?;
     a.map(|a| a / b)
 }
 
 /// The places of a hypothesis by name.
-pub(super) fn spots(h: &Hypothesis) -> Vec<Spot> {
-    h.places().into_iter().map(|p| Spot { place: p.place.clone(), node: p.node.clone() }).collect()
+pub(super) fn spots(h: &Hypothesis) -> Vec<PlaceName> {
+    h.places().into_iter().map(|p| PlaceName { place: p.place.clone(), node: p.node.clone() }).collect()
 }
 
 /// A hypothesis that is so many nats behind the one named.
-pub(super) fn alternative(h: &Hypothesis, behind: f64) -> Alternative {
-    Alternative { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
+pub(super) fn alternative(h: &Hypothesis, behind: f64) -> AlternativeExplanation {
+    AlternativeExplanation { effect: h.effect.clone(), family: h.family.clone(), places: spots(h), behind }
 }

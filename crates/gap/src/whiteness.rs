@@ -1,8 +1,8 @@
 //! What a model leaves, signal by signal: how strong it is beside the sensor's noise, whether neighbours have anything in
 //! common, and at which frequencies it lies. A complete model leaves white noise of unit power.
 
-use super::data::Recording;
-use super::estimate::candidate::Errors;
+use super::data::RecordingData;
+use super::estimate::candidate::RecordingResiduals;
 use super::lines::goertzel;
 use std::f64::consts::PI;
 
@@ -28,7 +28,7 @@ pub struct Whiteness {
 }
 
 /// Of all signals, from the errors that a model leaves of recordings and the noise of the sensors.
-pub fn whiteness(errors: &[Errors], recordings: &[Recording], noise: &[f64]) -> Vec<Whiteness> {
+pub fn whiteness(errors: &[RecordingResiduals], recordings: &[RecordingData], noise: &[f64]) -> Vec<Whiteness> {
     let steps: Vec<f64> = recordings.iter().map(|r| r.duration() / (r.len().max(2) - 1) as f64).collect();
     let one = |(signal, noise): (usize, &f64)| {
         // where nothing was measured, nothing is left

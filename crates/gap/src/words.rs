@@ -1,7 +1,10 @@
 //! The verdict in words, one screen of them.
 
 use super::policy::SEEN;
-use super::verdict::{Drift, Effect, Estimate, Flow, Located, Maybe, OpenGap, RecordingError, SignalGap, Verdict};
+use super::verdict::{
+    EffectFlow, OpenGap, OptionalNumber, ParameterDrift, ParameterEstimate, PlaceEvidence, RecordingError, SignalGap,
+    Verdict, VerdictEffect,
+};
 use std::fmt::Write;
 
 /// What the diagnosis found, for people: findings, the gap as a table, what is left.
@@ -40,10 +43,11 @@ fn headline(v: &Verdict) -> String {
 }
 
 /// What the model lacks; which of its parameters are off.
-fn lacking(effects: &[Effect]) -> String {
-    let (off, missing): (Vec<&Effect>, Vec<&Effect>) = effects.iter().partition(|e| e.family == "parameter");
-    let flow = |f: &Flow| format!(", up to {} in the recordings used", quantity(f.largest, &f.unit));
-    let one = |e: &&Effect| {
+fn lacking(effects: &[VerdictEffect]) -> String {
+    let (off, missing): (Vec<&VerdictEffect>, Vec<&VerdictEffect>) =
+        effects.iter().partition(|e| e.family == "parameter");
+    let flow = |f: &EffectFlow| format!(", up to {} in the recordings used", quantity(f.largest, &f.unit));
+    let one = |e: &&VerdictEffect| {
         let flow = e.flow.as_ref().map_or_else(String::new, flow);
         format!("{} at {}{flow}", lower(&e.description), places(e))
     };
@@ -54,7 +58,7 @@ fn lacking(effects: &[Effect]) -> String {
 }
 
 /// The places of an effect.
-fn places(e: &Effect) -> String {
+fn places(e: &VerdictEffect) -> String {
     e.places.iter().map(|p| format!("`{}`", p.place)).collect::<Vec<_>>().join(" and ")
 }
 
@@ -85,7 +89,7 @@ pub(super) fn rest(v: &Verdict) -> String {
             percent(t.closes)
         );
     }
-    let far = |d: &Drift| d.tolerances.filter(|t| t.abs() >= 2.0);
+    let far = |d: &ParameterDrift| d.tolerances.filter(|t| t.abs() >= 2.0);
     for (d, tolerances) in v.drifts.iter().filter_map(|d| Some((d, far(d)?))) {
         let (name, value, nominal) = (&d.parameter, number(d.value), number(d.nominal));
         let _ = writeln!(text, "`{name}` is {value} instead of {nominal} ({tolerances:+.1} tolerances).");
@@ -101,7 +105,7 @@ pub(super) fn rest(v: &Verdict) -> String {
 
 /// What is said where no effect is named.
 fn found_nothing(v: &Verdict) -> String {
-    let named = |p: &Located| format!("`{}` ({})", p.place, p.kind);
+    let named = |p: &PlaceEvidence| format!("`{}` ({})", p.place, p.kind);
     match v.verdict {
         "outside_library" => {
             let at = v.places.iter().find(|p| Some(&p.place) == v.unexplained.place.as_ref()).map(named);
@@ -162,7 +166,7 @@ fn gaps(v: &Verdict) -> String {
 
 /// A signal with its unit, what three models leave of it, and its noise.
 pub(super) fn gap_row(name: &str, g: &SignalGap) -> [String; 5] {
-    let cell = |rms: Maybe, share: Maybe| match (rms, share) {
+    let cell = |rms: OptionalNumber, share: OptionalNumber| match (rms, share) {
         (Some(rms), Some(share)) => format!("{} ({})", significant(rms), percent(share)),
         _ => "stops early".to_string(),
     };
@@ -184,7 +188,7 @@ fn quantity(v: f64, unit: &str) -> String {
     format!("{} {unit}", significant(v)).trim_end().to_string()
 }
 
-fn effect(i: usize, e: &Effect, count: usize) -> String {
+fn effect(i: usize, e: &VerdictEffect, count: usize) -> String {
     let values: Vec<String> = e.parameters.iter().map(|(n, p)| format!("{n} = {}", estimate(p, "+-"))).collect();
     let mut text = format!(
         "{}. {} ({}) at {}: {}. Evidence {:.0} nats, t = {:.1}.\n",
@@ -217,7 +221,7 @@ fn effect(i: usize, e: &Effect, count: usize) -> String {
 }
 
 /// A value with its deviation and unit; one that was not free has none.
-pub(super) fn estimate(p: &Estimate, sign: &str) -> String {
+pub(super) fn estimate(p: &ParameterEstimate, sign: &str) -> String {
     let (factor, unit) = p.shown.as_ref().map_or((1.0, &p.unit), |s| (s.factor, &s.unit));
     let deviation = if p.std > 0.0 { format!(" {sign} {}", number(factor * p.std)) } else { String::new() };
     let fixed = if p.std > 0.0 { "" } else { " (fixed)" };
@@ -246,16 +250,16 @@ pub(super) fn percent(v: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::verdict::Spot;
+    use super::super::verdict::PlaceName;
     use super::*;
     use std::collections::BTreeMap;
 
-    fn effect(family: &str, description: &str, place: &str, flow: Option<Flow>) -> Effect {
-        Effect {
+    fn effect(family: &str, description: &str, place: &str, flow: Option<EffectFlow>) -> VerdictEffect {
+        VerdictEffect {
             effect: String::new(),
             family: family.into(),
             description: description.into(),
-            places: vec![Spot { place: place.into(), node: Vec::new() }],
+            places: vec![PlaceName { place: place.into(), node: Vec::new() }],
             flow,
             evidence: 0.0,
             t: 0.0,
@@ -268,7 +272,7 @@ mod tests {
 
     #[test]
     fn what_is_missing_and_what_is_off() {
-        let flow = Flow { largest: 3.456, rms: 2.0, unit: "l/min".into() };
+        let flow = EffectFlow { largest: 3.456, rms: 2.0, unit: "l/min".into() };
         let leak = || effect("external_leak", "Laminar leakage to the low side", "pump.port_a", Some(flow.clone()));
         let drift = || effect("parameter", "", "motor.R_r", None);
         let leaks = "The model lacks laminar leakage to the low side at `pump.port_a`, up to 3.46 l/min in the recordings used.";

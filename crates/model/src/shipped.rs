@@ -11,9 +11,9 @@ static MODELS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/models");
 
 /// The world of shipped files, under the paths `components` and `models`.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Shipped;
+pub struct ShippedWorld;
 
-impl Shipped {
+impl ShippedWorld {
     /// Folders whose entries are top-level packages.
     pub fn roots() -> [PathBuf; 3] {
         ["components".into(), "models".into(), "models/stiff".into()]
@@ -21,16 +21,17 @@ impl Shipped {
 }
 
 /// What is packed, by its path: the packed folders themselves compare names one by one, part by part.
-struct Packed {
+struct EmbeddedFiles {
     files: FxHashMap<&'static str, &'static File<'static>>,
     folders: FxHashMap<&'static str, &'static Dir<'static>>,
 }
 
-static PACKED: LazyLock<[Packed; 2]> = LazyLock::new(|| [Packed::new(&COMPONENTS), Packed::new(&MODELS)]);
+static PACKED: LazyLock<[EmbeddedFiles; 2]> =
+    LazyLock::new(|| [EmbeddedFiles::new(&COMPONENTS), EmbeddedFiles::new(&MODELS)]);
 
-impl Packed {
-    fn new(dir: &'static Dir<'static>) -> Packed {
-        let mut all = Packed { files: FxHashMap::default(), folders: FxHashMap::default() };
+impl EmbeddedFiles {
+    fn new(dir: &'static Dir<'static>) -> EmbeddedFiles {
+        let mut all = EmbeddedFiles { files: FxHashMap::default(), folders: FxHashMap::default() };
         all.add(dir);
         all
     }
@@ -42,7 +43,7 @@ impl Packed {
     }
 }
 
-fn folder(path: &Path) -> Option<(&'static Packed, &str)> {
+fn folder(path: &Path) -> Option<(&'static EmbeddedFiles, &str)> {
     let [components, models] = &*PACKED;
     if let Ok(rest) = path.strip_prefix("components") {
         return Some((components, rest.to_str()?));
@@ -50,7 +51,7 @@ fn folder(path: &Path) -> Option<(&'static Packed, &str)> {
     path.strip_prefix("models").ok().and_then(|rest| Some((models, rest.to_str()?)))
 }
 
-impl World for Shipped {
+impl World for ShippedWorld {
     fn read(&self, path: &Path) -> Result<String, String> {
         let missing = || format!("no file `{}` ships with bramah", path.display());
         let (packed, rest) = folder(path).ok_or_else(missing)?;

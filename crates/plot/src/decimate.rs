@@ -1,11 +1,11 @@
 //! Long curves made short without a visible change.
 
 /// Points of a curve.
-pub type Points = Vec<(f64, f64)>;
+pub type CurvePoints = Vec<(f64, f64)>;
 
 /// A staircase as a polygon: each value is held until the next point.
-pub fn staircase(x: &[f64], y: &[f64]) -> Points {
-    let mut out: Points = Vec::with_capacity(2 * x.len());
+pub fn staircase(x: &[f64], y: &[f64]) -> CurvePoints {
+    let mut out: CurvePoints = Vec::with_capacity(2 * x.len());
     for (&x, &y) in x.iter().zip(y) {
         if let Some(&(_, last)) = out.last()
             && last != y
@@ -20,7 +20,7 @@ pub fn staircase(x: &[f64], y: &[f64]) -> Points {
 /// Keeps, of every one of `columns` equal stretches of `x`, the first, least, largest and last point in their order:
 /// drawn that many pixels wide, the curve looks the same. Curves whose `x` goes back and forth lose only points closer
 /// than a quarter of such a stretch in both directions. NaN points stay as gaps.
-pub fn decimate(points: Points, columns: usize) -> Points {
+pub fn decimate(points: CurvePoints, columns: usize) -> CurvePoints {
     if points.len() <= 4 * columns {
         return points;
     }
@@ -28,11 +28,11 @@ pub fn decimate(points: Points, columns: usize) -> Points {
     if forward { extremes(&points, columns) } else { thinned(&points, columns) }
 }
 
-fn extremes(points: &[(f64, f64)], columns: usize) -> Points {
+fn extremes(points: &[(f64, f64)], columns: usize) -> CurvePoints {
     let (low, high) = (points[0].0, points[points.len() - 1].0);
     let scale = columns as f64 / (high - low);
     let column = |p: &(f64, f64)| ((p.0 - low) * scale) as usize;
-    let mut out = Points::new();
+    let mut out = CurvePoints::new();
     for bin in points.chunk_by(|a, b| column(a) == column(b) && a.1.is_nan() == b.1.is_nan()) {
         let mut kept = vec![0, bin.len() - 1];
         let by_value = |i: &usize, j: &usize| bin[*i].1.total_cmp(&bin[*j].1);
@@ -45,7 +45,7 @@ fn extremes(points: &[(f64, f64)], columns: usize) -> Points {
     out
 }
 
-fn thinned(points: &[(f64, f64)], columns: usize) -> Points {
+fn thinned(points: &[(f64, f64)], columns: usize) -> CurvePoints {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let (low, high) = values.filter(|v| v.is_finite()).fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
         (high - low).max(f64::MIN_POSITIVE)
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn spikes_survive() {
-        let points: Points = (0..100_000).map(|i| (f64::from(i), if i == 54_321 { 7.0 } else { 0.0 })).collect();
+        let points: CurvePoints = (0..100_000).map(|i| (f64::from(i), if i == 54_321 { 7.0 } else { 0.0 })).collect();
         let short = decimate(points, 500);
         assert!(short.len() <= 2_000, "{}", short.len());
         assert!(short.contains(&(54_321.0, 7.0)));
@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn loops_keep_their_shape() {
-        let circle: Points = (0..100_000).map(|i| (f64::from(i) * 1e-3).sin_cos()).collect();
+        let circle: CurvePoints = (0..100_000).map(|i| (f64::from(i) * 1e-3).sin_cos()).collect();
         let short = decimate(circle, 100);
         assert!(short.len() < 40_000);
         assert!(short.iter().any(|p| p.0 > 0.999) && short.iter().any(|p| p.1 < -0.999));
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn gaps_and_steps() {
         assert_eq!(staircase(&[0.0, 1.0, 2.0], &[5.0, 5.0, 6.0]), [(0.0, 5.0), (1.0, 5.0), (2.0, 5.0), (2.0, 6.0)]);
-        let mut points: Points = (0..1000).map(|i| (f64::from(i), 1.0)).collect();
+        let mut points: CurvePoints = (0..1000).map(|i| (f64::from(i), 1.0)).collect();
         points[500].1 = f64::NAN;
         assert!(decimate(points, 10).iter().any(|p| p.1.is_nan()));
     }

@@ -6,14 +6,14 @@ pub struct Figure {
     /// Stands above; may be empty.
     pub title: String,
     /// From top to bottom.
-    pub panels: Vec<Panel>,
+    pub panels: Vec<FigurePanel>,
     /// All panels show the same horizontal axis, which is labelled once and zoomed together.
     pub shared_x: bool,
 }
 
 /// One pair of axes.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Panel {
+pub struct FigurePanel {
     /// Below the horizontal axis, with unit.
     pub x_label: String,
     /// Beside the vertical axis, with unit.
@@ -21,14 +21,14 @@ pub struct Panel {
     /// Words for the values 0, 1, 2 ... of the vertical axis, instead of numbers.
     pub words: Vec<String>,
     /// Curves, in the order of the legend.
-    pub series: Vec<Series>,
+    pub series: Vec<PlotSeries>,
     /// Areas behind the curves.
-    pub bands: Vec<Band>,
+    pub bands: Vec<PlotBand>,
 }
 
 /// One curve.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Series {
+pub struct PlotSeries {
     /// As in the legend.
     pub name: String,
     /// Horizontal values.
@@ -47,7 +47,7 @@ pub struct Series {
 
 /// An area between two curves.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Band {
+pub struct PlotBand {
     /// Horizontal values, growing.
     pub x: Vec<f64>,
     /// Lower edge.
@@ -66,7 +66,7 @@ pub fn colour(index: usize) -> &'static str {
     PALETTE[index % PALETTE.len()]
 }
 
-impl Panel {
+impl FigurePanel {
     /// The smallest rectangle around all finite points: left, right, bottom, top.
     pub fn bounds(&self) -> Option<(f64, f64, f64, f64)> {
         let curves = self.series.iter().map(|s| (&s.x, &s.y));

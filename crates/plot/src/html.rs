@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::decimate::{Points, decimate, staircase};
-use super::figure::{Figure, Panel, colour};
+use super::decimate::{CurvePoints, decimate, staircase};
+use super::figure::{Figure, FigurePanel, colour};
 use super::svg;
 use bramah_results::number;
 
@@ -75,7 +75,7 @@ fn fill(page: &str, parts: &[(&str, String)]) -> String {
 }
 
 fn head(figure: &Figure) -> String {
-    let panel = |p: &'_ Panel| -> serde_json::Value {
+    let panel = |p: &'_ FigurePanel| -> serde_json::Value {
         serde_json::to_value(PanelHead {
             x: &p.x_label,
             y: &p.y_label,
@@ -102,7 +102,7 @@ fn curves(figure: &Figure) -> String {
     for (i, panel) in figure.panels.iter().enumerate() {
         out.push_str(if i > 0 { ",\n[" } else { "[" });
         for (k, series) in panel.series.iter().enumerate() {
-            let points: Points = if series.held {
+            let points: CurvePoints = if series.held {
                 staircase(&series.x, &series.y)
             } else {
                 series.x.iter().copied().zip(series.y.iter().copied()).collect()
@@ -127,18 +127,18 @@ fn json_number(value: f64, digits: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::figure::Series;
+    use super::super::figure::PlotSeries;
     use super::*;
 
     #[test]
     fn one_page_without_network() {
-        let series = Series {
+        let series = PlotSeries {
             name: "</script>{{facts}}".into(),
             x: vec![0.0, 1.0],
             y: vec![1e5, f64::NAN],
-            ..Series::default()
+            ..PlotSeries::default()
         };
-        let panels = vec![Panel { series: vec![series], ..Panel::default() }];
+        let panels = vec![FigurePanel { series: vec![series], ..FigurePanel::default() }];
         let figure = Figure { title: "a < b".into(), panels, shared_x: true };
         let page = write(&figure, &[("model".into(), "A & B".into())]);
         assert!(page.contains("[[[0,100000,1,null]]]"), "{page}");

@@ -15,4 +15,4 @@ pub mod select;
 pub mod svg;
 mod ticks;
 
-pub use figure::{Band, Figure, Panel, Series};
+pub use figure::{Figure, FigurePanel, PlotBand, PlotSeries};

@@ -1,9 +1,9 @@
 //! A map: quantities over two others, with lines of equal value, as efficiencies are drawn over speed and pressure.
 
-use super::select::{Run, axis_label, shown_values};
+use super::select::{LabelledTrajectory, axis_label, shown_values};
 use super::svg::{begin, escape};
-use super::ticks::{Ticks, ticks};
-use bramah_results::{Globs, Signal, Trajectory};
+use super::ticks::{AxisTicks, ticks};
+use bramah_results::{GlobPatterns, Signal, Trajectory};
 use std::fmt::Write as _;
 
 /// Points of the horizontal axis between which runs are interpolated.
@@ -13,7 +13,7 @@ const CONSTANT: f64 = 1e-3;
 
 /// What is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Map {
+pub struct ContourMap {
     /// Stands above; may be empty.
     pub title: String,
     /// Below the horizontal axes, with unit.
@@ -32,7 +32,13 @@ pub struct Map {
 ///
 /// # Errors
 /// A sentence when a variable is missing, `y` changes along a run, `x` does not grow, or fewer than two rows remain.
-pub fn map(runs: &[Run<'_>], variables: &Globs, x: &str, y: &str, title: &str) -> Result<Map, String> {
+pub fn map(
+    runs: &[LabelledTrajectory<'_>],
+    variables: &GlobPatterns,
+    x: &str,
+    y: &str,
+    title: &str,
+) -> Result<ContourMap, String> {
     let mut rows = Vec::new();
     for run in runs {
         rows.push((level(run, y)?, run));
@@ -62,7 +68,7 @@ pub fn map(runs: &[Run<'_>], variables: &Globs, x: &str, y: &str, title: &str) -
     if panels.is_empty() {
         return Err("no variable matches".to_owned());
     }
-    Ok(Map {
+    Ok(ContourMap {
         title: title.to_owned(),
         x_label: axis_label(x, shown(first, x)?.0),
         y_label: axis_label(y, shown(first, y)?.0),
@@ -79,7 +85,7 @@ fn shown<'a>(trajectory: &'a Trajectory, name: &str) -> Result<(&'a Signal, Vec<
 }
 
 /// The value that a variable keeps along a run.
-fn level(run: &Run<'_>, name: &str) -> Result<f64, String> {
+fn level(run: &LabelledTrajectory<'_>, name: &str) -> Result<f64, String> {
     let (_, column) = shown(run.trajectory, name)?;
     let (low, high) = column.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     if high - low <= CONSTANT * high.abs().max(low.abs()) {
@@ -89,7 +95,7 @@ fn level(run: &Run<'_>, name: &str) -> Result<f64, String> {
     }
 }
 
-fn growing(run: &Run<'_>, name: &str) -> Result<Vec<f64>, String> {
+fn growing(run: &LabelledTrajectory<'_>, name: &str) -> Result<Vec<f64>, String> {
     let (_, column) = shown(run.trajectory, name)?;
     if column.len() >= 2 && column.windows(2).all(|w| w[1] >= w[0]) && column[0] < column[column.len() - 1] {
         Ok(column)
@@ -110,11 +116,11 @@ const BELOW: f64 = 52.0;
 const ABOVE: f64 = 30.0;
 
 /// A corner on the page with its value.
-type Corner = (f64, f64, f64);
+type GridCorner = (f64, f64, f64);
 
 /// One quantity on the page.
-struct Frame<'a> {
-    map: &'a Map,
+struct ContourMapFrame<'a> {
+    map: &'a ContourMap,
     values: &'a [Vec<f64>],
     left: f64,
     top: f64,
@@ -122,8 +128,8 @@ struct Frame<'a> {
     height: f64,
 }
 
-impl Frame<'_> {
-    fn corner(&self, column: usize, row: usize) -> Corner {
+impl ContourMapFrame<'_> {
+    fn corner(&self, column: usize, row: usize) -> GridCorner {
         let span = |v: &[f64], at: f64| (at - v[0]) / (v[v.len() - 1] - v[0]);
         let x = self.left + span(&self.map.x, self.map.x[column]) * self.width;
         let y = self.top + (1.0 - span(&self.map.y, self.map.y[row])) * self.height;
@@ -137,12 +143,12 @@ impl Frame<'_> {
     }
 
     /// The corners of a cell, around it.
-    fn cell(&self, column: usize, row: usize) -> [Corner; 4] {
+    fn cell(&self, column: usize, row: usize) -> [GridCorner; 4] {
         [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| self.corner(column + i, row + j))
     }
 
     /// Both halves of each cell; those with holes are left out.
-    fn triangles(&self) -> Vec<[Corner; 3]> {
+    fn triangles(&self) -> Vec<[GridCorner; 3]> {
         let (rows, columns) = (self.map.y.len() - 1, self.map.x.len() - 1);
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
         let halves = cells.flat_map(|(column, row)| {
@@ -154,7 +160,7 @@ impl Frame<'_> {
 }
 
 /// Draws a map, 900 wide; two quantities a row.
-pub fn write(map: &Map) -> String {
+pub fn write(map: &ContourMap) -> String {
     let columns = map.panels.len().min(2);
     let rows = map.panels.len().div_ceil(2);
     let wide = WIDTH / columns.max(1) as f64;
@@ -168,7 +174,7 @@ pub fn write(map: &Map) -> String {
             writeln!(out, "<text x=\"{x}\" y=\"25\" font-size=\"16\" text-anchor=\"middle\">{}</text>", escape(title));
     }
     for (k, (name, values)) in map.panels.iter().enumerate() {
-        let frame = Frame {
+        let frame = ContourMapFrame {
             map,
             values,
             left: LEFT + wide * (k % 2) as f64,
@@ -182,7 +188,7 @@ pub fn write(map: &Map) -> String {
     out
 }
 
-fn panel(out: &mut String, frame: &Frame<'_>, name: &str) {
+fn panel(out: &mut String, frame: &ContourMapFrame<'_>, name: &str) {
     let triangles = frame.triangles();
     let finite = || triangles.iter().flatten().map(|c| c.2);
     let (low, high) = (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max));
@@ -193,7 +199,7 @@ fn panel(out: &mut String, frame: &Frame<'_>, name: &str) {
 }
 
 /// Areas between neighbouring levels, from light to dark.
-fn bands(out: &mut String, frame: &Frame<'_>, levels: &Ticks) {
+fn bands(out: &mut String, frame: &ContourMapFrame<'_>, levels: &AxisTicks) {
     let edges: Vec<f64> = levels.marks.iter().map(|m| m.0).collect();
     for k in 0..=edges.len() {
         let low = if k == 0 { f64::NEG_INFINITY } else { edges[k - 1] };
@@ -210,8 +216,8 @@ fn bands(out: &mut String, frame: &Frame<'_>, levels: &Ticks) {
 }
 
 /// Neighbouring cells that lie wholly in a band make one rectangle; others are cut.
-fn band_of_row(path: &mut String, frame: &Frame<'_>, row: usize, (low, high): (f64, f64)) {
-    let mut whole: Option<[Corner; 4]> = None;
+fn band_of_row(path: &mut String, frame: &ContourMapFrame<'_>, row: usize, (low, high): (f64, f64)) {
+    let mut whole: Option<[GridCorner; 4]> = None;
     for column in 0..frame.map.x.len() - 1 {
         let cell = frame.cell(column, row);
         if cell.iter().all(|c| c.2 >= low && c.2 <= high) {
@@ -229,7 +235,7 @@ fn band_of_row(path: &mut String, frame: &Frame<'_>, row: usize, (low, high): (f
     polygon(path, whole.as_ref().map_or(&[], |w| w.as_slice()));
 }
 
-fn polygon(path: &mut String, corners: &[Corner]) {
+fn polygon(path: &mut String, corners: &[GridCorner]) {
     for (i, corner) in corners.iter().enumerate() {
         let _ = write!(path, "{}{:.1} {:.1}", if i == 0 { "M" } else { "L" }, corner.0, corner.1);
     }
@@ -245,7 +251,7 @@ fn shade(share: f64) -> String {
 }
 
 /// The part of a polygon where a function of the value is not negative.
-fn clipped(polygon: &[Corner], inside: impl Fn(f64) -> f64) -> Vec<Corner> {
+fn clipped(polygon: &[GridCorner], inside: impl Fn(f64) -> f64) -> Vec<GridCorner> {
     let mut out = Vec::new();
     for (i, &b) in polygon.iter().enumerate() {
         let a = polygon[(i + polygon.len() - 1) % polygon.len()];
@@ -262,7 +268,7 @@ fn clipped(polygon: &[Corner], inside: impl Fn(f64) -> f64) -> Vec<Corner> {
 }
 
 /// Lines of equal value, each with its number where it crosses the diagonal.
-fn lines(out: &mut String, frame: &Frame<'_>, triangles: &[[Corner; 3]], levels: &Ticks) {
+fn lines(out: &mut String, frame: &ContourMapFrame<'_>, triangles: &[[GridCorner; 3]], levels: &AxisTicks) {
     let mut texts: Vec<(f64, f64)> = Vec::new();
     let mut numbers = String::new();
     for (level, text) in &levels.marks {
@@ -292,7 +298,7 @@ fn lines(out: &mut String, frame: &Frame<'_>, triangles: &[[Corner; 3]], levels:
 }
 
 /// Where a level passes through a triangle.
-fn crossing(triangle: &[Corner; 3], level: f64) -> Option<[f64; 4]> {
+fn crossing(triangle: &[GridCorner; 3], level: f64) -> Option<[f64; 4]> {
     let mut points = Vec::new();
     for i in 0..3 {
         let (a, b) = (triangle[i], triangle[(i + 1) % 3]);
@@ -307,8 +313,8 @@ fn crossing(triangle: &[Corner; 3], level: f64) -> Option<[f64; 4]> {
     }
 }
 
-fn axes(out: &mut String, frame: &Frame<'_>, name: &str) {
-    let Frame { left, top, width, height, map, .. } = frame;
+fn axes(out: &mut String, frame: &ContourMapFrame<'_>, name: &str) {
+    let ContourMapFrame { left, top, width, height, map, .. } = frame;
     let (right, bottom) = (left + width, top + height);
     let _ = writeln!(
         out,
@@ -362,14 +368,14 @@ mod tests {
         t
     }
 
-    fn runs(rows: &[Trajectory]) -> Vec<Run<'_>> {
-        rows.iter().map(|trajectory| Run { label: "a", trajectory }).collect()
+    fn runs(rows: &[Trajectory]) -> Vec<LabelledTrajectory<'_>> {
+        rows.iter().map(|trajectory| LabelledTrajectory { label: "a", trajectory }).collect()
     }
 
     #[test]
     fn rows_are_sorted_and_interpolated() {
         let rows = [row(4.0), row(0.0), row(2.0)];
-        let map = map(&runs(&rows), &Globs::new(&["z"]), "x", "y", "").unwrap();
+        let map = map(&runs(&rows), &GlobPatterns::new(&["z"]), "x", "y", "").unwrap();
         assert_eq!(map.y, [0.0, 2.0, 4.0]);
         let (name, values) = &map.panels[0];
         assert_eq!((name.as_str(), map.panels.len()), ("z", 1));
@@ -383,11 +389,11 @@ mod tests {
     #[test]
     fn what_is_no_map_is_told() {
         let rows = [row(0.0), row(2.0)];
-        let said = |x: &str, y: &str| map(&runs(&rows), &Globs::new(&["z"]), x, y, "").unwrap_err();
+        let said = |x: &str, y: &str| map(&runs(&rows), &GlobPatterns::new(&["z"]), x, y, "").unwrap_err();
         assert_eq!(said("x", "z"), "`z` changes along a, and each result is one row of the map");
         assert_eq!(said("y", "y"), "`y` does not grow along a");
         assert_eq!(said("x", "w"), "there is no variable `w`");
-        let one = map(&runs(&rows[..1]), &Globs::new(&["z"]), "x", "y", "").unwrap_err();
+        let one = map(&runs(&rows[..1]), &GlobPatterns::new(&["z"]), "x", "y", "").unwrap_err();
         assert_eq!(one, "a map needs results with two or more values of `y`");
     }
 
@@ -396,7 +402,7 @@ mod tests {
         let triangle = [(0.0, 0.0, 0.0), (10.0, 0.0, 1.0), (0.0, 10.0, 1.0)];
         assert_eq!(crossing(&triangle, 0.5), Some([5.0, 0.0, 0.0, 5.0]));
         assert_eq!(crossing(&triangle, 2.0), None);
-        let area = |p: &[Corner]| {
+        let area = |p: &[GridCorner]| {
             let cross = |i: usize| p[i].0 * p[(i + 1) % p.len()].1 - p[(i + 1) % p.len()].0 * p[i].1;
             (0..p.len()).map(cross).sum::<f64>().abs() / 2.0
         };
@@ -407,7 +413,7 @@ mod tests {
     #[test]
     fn a_picture_has_lines_and_numbers() {
         let rows = [row(0.0), row(2.0), row(4.0)];
-        let picture = write(&map(&runs(&rows), &Globs::new(&["z"]), "x", "y", "A plane").unwrap());
+        let picture = write(&map(&runs(&rows), &GlobPatterns::new(&["z"]), "x", "y", "A plane").unwrap());
         assert!(picture.starts_with("<svg") && picture.ends_with("</svg>\n"));
         assert!(picture.contains("A plane") && picture.contains(">8</text>"));
         assert!(!picture.contains("NaN") && !picture.contains("inf"));

@@ -2,13 +2,13 @@
 
 use super::figure::colour;
 use super::svg::{begin, escape};
-use super::ticks::{Ticks, ticks};
+use super::ticks::{AxisTicks, ticks};
 use bramah_results::number;
 use std::fmt::Write as _;
 
 /// What is drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Matrix {
+pub struct ScatterMatrix {
     /// Stands above; may be empty.
     pub title: String,
     /// Names of the columns.
@@ -30,7 +30,7 @@ const BARS: usize = 16;
 const DOTS: usize = 2000;
 
 /// One cell on the page with the ranges of its axes.
-struct Cell {
+struct ScatterCell {
     left: f64,
     top: f64,
     side: f64,
@@ -38,7 +38,7 @@ struct Cell {
     y: (f64, f64),
 }
 
-impl Cell {
+impl ScatterCell {
     fn px(&self, x: f64) -> f64 {
         self.left + (x - self.x.0) / (self.x.1 - self.x.0) * self.side
     }
@@ -49,7 +49,7 @@ impl Cell {
 }
 
 /// Draws the lower half of a matrix, 900 wide and about as high.
-pub fn write(matrix: &Matrix) -> String {
+pub fn write(matrix: &ScatterMatrix) -> String {
     let n = matrix.names.len().max(1);
     let top = if matrix.title.is_empty() { 12.0 } else { 44.0 };
     let side = (WIDTH - MARGIN - 12.0 - GAP * (n - 1) as f64) / n as f64;
@@ -65,8 +65,13 @@ pub fn write(matrix: &Matrix) -> String {
     for row in 0..matrix.names.len() {
         for column in 0..=row {
             let place = |k: usize| (side + GAP) * k as f64;
-            let cell =
-                Cell { left: MARGIN + place(column), top: top + place(row), side, x: ranges[column], y: ranges[row] };
+            let cell = ScatterCell {
+                left: MARGIN + place(column),
+                top: top + place(row),
+                side,
+                x: ranges[column],
+                y: ranges[row],
+            };
             if row == column {
                 spread(&mut out, matrix, row, &cell)
             } else {
@@ -97,7 +102,7 @@ fn range(values: &[f64]) -> (f64, f64) {
 }
 
 /// How often a column takes which values, under its name.
-fn spread(out: &mut String, matrix: &Matrix, column: usize, cell: &Cell) {
+fn spread(out: &mut String, matrix: &ScatterMatrix, column: usize, cell: &ScatterCell) {
     let mut counts = [0u32; BARS];
     let wide = cell.x.1 - cell.x.0;
     for v in matrix.columns[column].iter().filter(|v| v.is_finite()) {
@@ -121,7 +126,7 @@ fn spread(out: &mut String, matrix: &Matrix, column: usize, cell: &Cell) {
     let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" font-weight=\"bold\">{name}</text>");
 }
 
-fn dots(out: &mut String, matrix: &Matrix, row: usize, column: usize, cell: &Cell) {
+fn dots(out: &mut String, matrix: &ScatterMatrix, row: usize, column: usize, cell: &ScatterCell) {
     let (xs, ys) = (&matrix.columns[column], &matrix.columns[row]);
     let shades = matrix.shade.map(|k| &matrix.columns[k]);
     let (low, high) = shades.map_or((0.0, 1.0), |s| extremes(s));
@@ -144,7 +149,7 @@ fn between(part: f64) -> String {
 }
 
 /// As many ticks as there is room for, but two at least: one number alone says nothing of the scale.
-fn readable(range: (f64, f64), side: f64) -> Ticks {
+fn readable(range: (f64, f64), side: f64) -> AxisTicks {
     let least = ((side / 55.0) as usize).max(2);
     let found = |count: usize| ticks(range.0, range.1, count);
     (least..least + 4).map(found).find(|t| t.marks.len() > 1).unwrap_or_else(|| found(least))
@@ -160,7 +165,7 @@ fn inside(middle: f64, half: f64, (begin, side): (f64, f64)) -> f64 {
 }
 
 /// The edge, and numbers at the left and at the bottom of the matrix.
-fn frame(out: &mut String, cell: &Cell, (left, bottom): (bool, bool)) {
+fn frame(out: &mut String, cell: &ScatterCell, (left, bottom): (bool, bool)) {
     let (l, t, s) = (cell.left, cell.top, cell.side);
     let _ = writeln!(
         out,
@@ -200,7 +205,7 @@ mod tests {
 
     #[test]
     fn cells_below_the_diagonal_and_failed_runs_left_out() {
-        let matrix = Matrix {
+        let matrix = ScatterMatrix {
             title: "4 runs".into(),
             names: vec!["pump.D".into(), "p<set>".into(), "peak".into()],
             columns: vec![vec![1.0, 2.0, 3.0, 4.0], vec![5e6, 6e6, 7e6, 8e6], vec![0.1, 0.4, f64::NAN, 0.2]],
@@ -232,14 +237,14 @@ mod tests {
     #[test]
     fn empty_and_constant_columns_are_drawn() {
         for column in [vec![], vec![2.0; 3], vec![f64::NAN; 2], vec![f64::INFINITY, 0.0]] {
-            let matrix = Matrix {
+            let matrix = ScatterMatrix {
                 names: vec!["a".into(), "b".into()],
                 columns: vec![column.clone(), column],
-                ..Matrix::default()
+                ..ScatterMatrix::default()
             };
             let text = write(&matrix);
             assert!(text.starts_with("<svg") && !text.contains("NaN") && !text.contains("inf"), "{text}");
         }
-        assert!(write(&Matrix::default()).contains("</svg>"));
+        assert!(write(&ScatterMatrix::default()).contains("</svg>"));
     }
 }

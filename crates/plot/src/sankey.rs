@@ -7,7 +7,7 @@ use std::fmt::Write;
 
 /// A stream from one thing to another.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Flow {
+pub struct SankeyFlow {
     /// Where it comes from.
     pub from: String,
     /// Where it goes.
@@ -27,7 +27,7 @@ const NAME: f64 = 150.0;
 /// The bend of a stream that goes back, beyond half of its width.
 const BEND: f64 = 6.0;
 
-struct Block<'a> {
+struct SankeyNode<'a> {
     name: &'a str,
     column: usize,
     size: f64,
@@ -37,19 +37,20 @@ struct Block<'a> {
 }
 
 /// The streams as SVG, from left to right; those that close a circle go back below. `words` says a size with its unit.
-pub fn svg(title: &str, flows: &[Flow], words: impl Fn(f64) -> String) -> String {
+pub fn svg(title: &str, flows: &[SankeyFlow], words: impl Fn(f64) -> String) -> String {
     let back = returning(flows);
     let mut blocks = blocks(flows, &back);
     let scale = place(&mut blocks, flows, &back);
-    let width = |flow: &Flow| (flow.size * scale).max(0.5);
+    let width = |flow: &SankeyFlow| (flow.size * scale).max(0.5);
     let widest = flows.iter().zip(&back).filter(|(_, b)| **b).map(|(f, _)| width(f) + BEND).fold(0.0, f64::max);
     let columns = blocks.iter().map(|b| b.column).max().unwrap_or(0);
     let from = EDGE + widest;
     let room = WIDTH - from - widest.max(NAME) - BAR;
     let left = |column: usize| from + room * column as f64 / columns.max(1) as f64;
     let mut lowest = blocks.iter().map(|b| b.top + b.size * scale).fold(TOP, f64::max) + EDGE;
-    let find =
-        |blocks: &[Block<'_>], name: &str| blocks.iter().position(|b| b.name == name).expect("every end has a block");
+    let find = |blocks: &[SankeyNode<'_>], name: &str| {
+        blocks.iter().position(|b| b.name == name).expect("every end has a block")
+    };
     let mut streams = String::new();
     for (k, y0, y1) in ends(flows, &back, &mut blocks, scale) {
         let flow = &flows[k];
@@ -101,10 +102,10 @@ pub fn svg(title: &str, flows: &[Flow], words: impl Fn(f64) -> String) -> String
 
 /// Which streams close a circle: the large ones go forward first, and one goes back where its end already leads to its
 /// beginning.
-fn returning(flows: &[Flow]) -> Vec<bool> {
+fn returning(flows: &[SankeyFlow]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..flows.len()).collect();
     order.sort_by(|&a, &b| flows[b].size.total_cmp(&flows[a].size).then(a.cmp(&b)));
-    let mut forward: Vec<&Flow> = Vec::new();
+    let mut forward: Vec<&SankeyFlow> = Vec::new();
     let mut back = vec![false; flows.len()];
     for k in order {
         let mut reached = BTreeSet::from([flows[k].to.as_str()]);
@@ -121,7 +122,7 @@ fn returning(flows: &[Flow]) -> Vec<bool> {
 }
 
 /// Each thing with the column it stands in: one behind everything that feeds it.
-fn blocks<'a>(flows: &'a [Flow], back: &[bool]) -> Vec<Block<'a>> {
+fn blocks<'a>(flows: &'a [SankeyFlow], back: &[bool]) -> Vec<SankeyNode<'a>> {
     let mut sums: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for flow in flows {
         sums.entry(&flow.from).or_default().0 += flow.size;
@@ -137,21 +138,21 @@ fn blocks<'a>(flows: &'a [Flow], back: &[bool]) -> Vec<Block<'a>> {
     }
     let block = |(name, (given, taken)): (&'a str, (f64, f64))| {
         let (column, size) = (columns[name], given.max(taken));
-        Block { name, column, size, top: 0.0, given: 0.0, taken: 0.0 }
+        SankeyNode { name, column, size, top: 0.0, given: 0.0, taken: 0.0 }
     };
-    let mut all: Vec<Block<'a>> = sums.into_iter().map(block).collect();
+    let mut all: Vec<SankeyNode<'a>> = sums.into_iter().map(block).collect();
     all.sort_by(|a, b| a.column.cmp(&b.column).then(b.size.total_cmp(&a.size)).then(a.name.cmp(b.name)));
     all
 }
 
 /// Stacks the things of each column, each near what feeds it; returns the height of one unit of size.
-fn place(blocks: &mut [Block<'_>], flows: &[Flow], back: &[bool]) -> f64 {
+fn place(blocks: &mut [SankeyNode<'_>], flows: &[SankeyFlow], back: &[bool]) -> f64 {
     let columns = blocks.iter().map(|b| b.column + 1).max().unwrap_or(0);
     let total = |column: usize| blocks.iter().filter(|b| b.column == column).map(|b| b.size).sum::<f64>();
     let largest = (0..columns).map(total).fold(0.0, f64::max);
     let scale = if largest > 0.0 { HEIGHT / largest } else { 1.0 };
     for column in 0..columns {
-        let height = |block: &Block<'_>| {
+        let height = |block: &SankeyNode<'_>| {
             let feeds = flows.iter().zip(back).filter(|(f, back)| !**back && f.to == block.name).map(|(f, _)| f);
             let middle =
                 |name: &str| blocks.iter().find(|b| b.name == name).map_or(0.0, |b| b.top + b.size * scale / 2.0);
@@ -172,10 +173,11 @@ fn place(blocks: &mut [Block<'_>], flows: &[Flow], back: &[bool]) -> f64 {
 
 /// The streams with the heights of their ends: those at one bar in the order of their other ends, so that they do not
 /// cross there, and those that go back lowest.
-fn ends(flows: &[Flow], back: &[bool], blocks: &mut [Block<'_>], scale: f64) -> Vec<(usize, f64, f64)> {
+fn ends(flows: &[SankeyFlow], back: &[bool], blocks: &mut [SankeyNode<'_>], scale: f64) -> Vec<(usize, f64, f64)> {
     let mut all: Vec<(usize, f64, f64)> = (0..flows.len()).map(|k| (k, 0.0, 0.0)).collect();
-    let find =
-        |blocks: &[Block<'_>], name: &str| blocks.iter().position(|b| b.name == name).expect("every end has a block");
+    let find = |blocks: &[SankeyNode<'_>], name: &str| {
+        blocks.iter().position(|b| b.name == name).expect("every end has a block")
+    };
     for giving in [true, false] {
         let far = |k: usize| if giving { &flows[k].to } else { &flows[k].from };
         let key = |k: usize| (back[k], blocks[find(blocks, far(k))].top);
@@ -199,8 +201,8 @@ fn ends(flows: &[Flow], back: &[bool], blocks: &mut [Block<'_>], scale: f64) -> 
 mod tests {
     use super::*;
 
-    fn flow(from: &str, to: &str, size: f64) -> Flow {
-        Flow { from: from.into(), to: to.into(), size }
+    fn flow(from: &str, to: &str, size: f64) -> SankeyFlow {
+        SankeyFlow { from: from.into(), to: to.into(), size }
     }
 
     #[test]

@@ -4,9 +4,9 @@ use indexmap::IndexMap;
 use rustc_hash::FxHasher;
 use std::hash::Hasher;
 
-use super::figure::{Figure, Panel, Series};
-use bramah_expr::units::Unit;
-use bramah_results::{Globs, Kind, Signal, Trajectory};
+use super::figure::{Figure, FigurePanel, PlotSeries};
+use bramah_expr::units::MeasurementUnit;
+use bramah_results::{GlobPatterns, Kind, Signal, Trajectory};
 
 /// More curves than this do not share a panel: their colours would repeat.
 const CURVES: usize = 7;
@@ -15,11 +15,11 @@ const UNASKED: usize = 28;
 
 /// What to draw.
 #[derive(Clone, Debug, Default)]
-pub struct Choice {
+pub struct FigureOptions {
     /// Signals by name; all when empty.
-    pub variables: Globs,
+    pub variables: GlobPatterns,
     /// Panels composed by hand, each of what its patterns match; by unit when empty.
-    pub panels: Vec<Globs>,
+    pub panels: Vec<GlobPatterns>,
     /// The signal on the horizontal axis; time when `None`.
     pub x: Option<String>,
     /// Stands above the picture.
@@ -64,7 +64,7 @@ impl UnitSystem {
 
 /// A trajectory with the name that tells its curves from those of others.
 #[derive(Clone, Copy, Debug)]
-pub struct Run<'a> {
+pub struct LabelledTrajectory<'a> {
     /// Such as the file name; shown when several runs are drawn.
     pub label: &'a str,
     /// The signals.
@@ -73,7 +73,7 @@ pub struct Run<'a> {
 
 /// A figure, and what the user should know about the choice made for him.
 #[derive(Clone, Debug, Default)]
-pub struct Selected {
+pub struct FigureSelection {
     /// What to draw.
     pub figure: Figure,
     /// Signals left out because the user did not choose.
@@ -85,7 +85,7 @@ pub struct Selected {
 ///
 /// # Errors
 /// A sentence when nothing matches or the horizontal signal does not exist.
-pub fn figure(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
+pub fn figure(runs: &[LabelledTrajectory<'_>], choice: &FigureOptions) -> Result<FigureSelection, String> {
     if !choice.panels.is_empty() {
         return by_hand(runs, choice);
     }
@@ -106,14 +106,14 @@ pub fn figure(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
         }
     }
     let figure = Figure { title: choice.title.clone(), panels, shared_x: choice.x.is_none() };
-    Ok(Selected { figure, left_out })
+    Ok(FigureSelection { figure, left_out })
 }
 
 /// Panels that the user composed, each of one dimension: values are shown in the unit of its first signal.
-fn by_hand(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
+fn by_hand(runs: &[LabelledTrajectory<'_>], choice: &FigureOptions) -> Result<FigureSelection, String> {
     let mut panels = Vec::new();
     for globs in &choice.panels {
-        let one = Choice { variables: globs.clone(), panels: Vec::new(), ..choice.clone() };
+        let one = FigureOptions { variables: globs.clone(), panels: Vec::new(), ..choice.clone() };
         let mut signals = chosen_names(runs, &one)?;
         signals.sort_by_key(|s| globs.position(&s.name));
         let like_first: Vec<Signal> = signals.iter().map(|s| shown_like(s, signals[0])).collect();
@@ -124,7 +124,7 @@ fn by_hand(runs: &[Run<'_>], choice: &Choice) -> Result<Selected, String> {
         panels.push(panel(runs, &like_first.iter().collect::<Vec<_>>(), choice.x.as_deref())?);
     }
     let figure = Figure { title: choice.title.clone(), panels, shared_x: choice.x.is_none() };
-    Ok(Selected { figure, left_out: 0 })
+    Ok(FigureSelection { figure, left_out: 0 })
 }
 
 /// A signal shown in the unit of another, where it has its dimension.
@@ -134,7 +134,7 @@ fn shown_like(signal: &Signal, first: &Signal) -> Signal {
 }
 
 /// The signals to draw, each name once, in the order of the runs.
-fn chosen_names<'a>(runs: &[Run<'a>], choice: &Choice) -> Result<Vec<&'a Signal>, String> {
+fn chosen_names<'a>(runs: &[LabelledTrajectory<'a>], choice: &FigureOptions) -> Result<Vec<&'a Signal>, String> {
     let mut chosen: IndexMap<&str, &Signal> = IndexMap::new();
     for run in runs {
         for signal in &run.trajectory.signals {
@@ -152,7 +152,7 @@ fn chosen_names<'a>(runs: &[Run<'a>], choice: &Choice) -> Result<Vec<&'a Signal>
 
 /// Without a choice of the user: no constants, parameters among them, and what is equal everywhere once, by its shortest
 /// name; all, where nothing changes.
-fn worth_drawing(runs: &[Run<'_>], chosen: &mut Vec<&Signal>) {
+fn worth_drawing(runs: &[LabelledTrajectory<'_>], chosen: &mut Vec<&Signal>) {
     let mut seen: IndexMap<u64, Vec<&Signal>> = IndexMap::new();
     for &signal in chosen.iter() {
         let (mut moves, mut values) = (false, FxHasher::default());
@@ -195,11 +195,11 @@ pub fn shown_unit(signal: &Signal) -> &str {
     if conversion(signal).is_some() { &signal.display_unit } else { &signal.unit }
 }
 
-fn conversion(signal: &Signal) -> Option<(Unit, Unit)> {
+fn conversion(signal: &Signal) -> Option<(MeasurementUnit, MeasurementUnit)> {
     if signal.display_unit.is_empty() || signal.display_unit == signal.unit {
         return None;
     }
-    let (from, to) = (Unit::parse(&signal.unit).ok()?, Unit::parse(&signal.display_unit).ok()?);
+    let (from, to) = (MeasurementUnit::parse(&signal.unit).ok()?, MeasurementUnit::parse(&signal.display_unit).ok()?);
     (from.dimension == to.dimension).then_some((from, to))
 }
 
@@ -219,8 +219,9 @@ pub fn axis_label(name: &str, signal: &Signal) -> String {
     }
 }
 
-fn panel(runs: &[Run<'_>], signals: &[&Signal], x: Option<&str>) -> Result<Panel, String> {
-    let mut panel = Panel { x_label: "time in s".to_owned(), y_label: y_label(signals), ..Panel::default() };
+fn panel(runs: &[LabelledTrajectory<'_>], signals: &[&Signal], x: Option<&str>) -> Result<FigurePanel, String> {
+    let mut panel =
+        FigurePanel { x_label: "time in s".to_owned(), y_label: y_label(signals), ..FigurePanel::default() };
     panel.words = words(signals[0]);
     for (r, run) in runs.iter().enumerate() {
         let horizontal = match x {
@@ -234,7 +235,7 @@ fn panel(runs: &[Run<'_>], signals: &[&Signal], x: Option<&str>) -> Result<Panel
         };
         for (s, signal) in signals.iter().enumerate() {
             let Some(index) = run.trajectory.index(&signal.name) else { continue };
-            panel.series.push(Series {
+            panel.series.push(PlotSeries {
                 name: if runs.len() > 1 { format!("{} ({})", signal.name, run.label) } else { signal.name.clone() },
                 x: horizontal.clone(),
                 y: plotted(signal, &run.trajectory.columns[index]),
@@ -306,9 +307,9 @@ mod tests {
         let mut t = Trajectory::new(["line.port_a.p", "line.p", "k", "q"].map(Signal::new).to_vec());
         t.push(0.0, &[1.0, 1.0, 5.0, 0.0]);
         t.push(1.0, &[2.0, 2.0, 5.0, 1.0]);
-        let run = Run { label: "a", trajectory: &t };
+        let run = LabelledTrajectory { label: "a", trajectory: &t };
         let drawn = |variables: &[&str]| {
-            let choice = Choice { variables: Globs::new(variables), ..Choice::default() };
+            let choice = FigureOptions { variables: GlobPatterns::new(variables), ..FigureOptions::default() };
             let figure = figure(&[run], &choice).unwrap().figure;
             let names = figure.panels.iter().flat_map(|p| p.series.iter().map(|s| s.name.clone()));
             names.collect::<Vec<_>>().join(" ")
@@ -329,8 +330,8 @@ mod tests {
     #[test]
     fn panels_by_unit() {
         let t = sample();
-        let run = Run { label: "a", trajectory: &t };
-        let figure = figure(&[run], &Choice::default()).unwrap().figure;
+        let run = LabelledTrajectory { label: "a", trajectory: &t };
+        let figure = figure(&[run], &FigureOptions::default()).unwrap().figure;
         let labels: Vec<(&str, usize)> = figure.panels.iter().map(|p| (p.y_label.as_str(), p.series.len())).collect();
         assert_eq!(labels, [("p in bar", 2), ("pump.q in m3/s", 1), ("", 1), ("", 1)]);
         assert_eq!(figure.panels[0].series[0].y, [1.0, 3.0]);
@@ -341,11 +342,11 @@ mod tests {
     #[test]
     fn panels_by_hand() {
         let t = sample();
-        let run = Run { label: "a", trajectory: &t };
+        let run = LabelledTrajectory { label: "a", trajectory: &t };
         let drawn = |panels: &[&str]| {
-            let panels = panels.iter().map(|p| Globs::new(&[p])).collect();
-            let found = figure(&[run], &Choice { panels, ..Choice::default() })?.figure;
-            let names = |p: &Panel| p.series.iter().map(|s| s.name.clone()).collect::<Vec<_>>().join(" ");
+            let panels = panels.iter().map(|p| GlobPatterns::new(&[p])).collect();
+            let found = figure(&[run], &FigureOptions { panels, ..FigureOptions::default() })?.figure;
+            let names = |p: &FigurePanel| p.series.iter().map(|s| s.name.clone()).collect::<Vec<_>>().join(" ");
             Ok::<_, String>(found.panels.iter().map(names).collect::<Vec<_>>())
         };
         assert_eq!(drawn(&["tank.p,pump.p", "on", "*.p"]).unwrap(), ["tank.p pump.p", "on", "pump.p tank.p"]);
@@ -358,13 +359,18 @@ mod tests {
     #[test]
     fn two_runs_against_a_variable() {
         let t = sample();
-        let runs = [Run { label: "a", trajectory: &t }, Run { label: "b", trajectory: &t }];
-        let choice = Choice { variables: Globs::new(&["tank.p"]), x: Some("pump.p".into()), ..Choice::default() };
+        let runs =
+            [LabelledTrajectory { label: "a", trajectory: &t }, LabelledTrajectory { label: "b", trajectory: &t }];
+        let choice = FigureOptions {
+            variables: GlobPatterns::new(&["tank.p"]),
+            x: Some("pump.p".into()),
+            ..FigureOptions::default()
+        };
         let figure = figure(&runs, &choice).unwrap().figure;
         assert!(!figure.shared_x);
         assert_eq!(figure.panels[0].x_label, "pump.p in bar");
         assert_eq!(figure.panels[0].series[1].name, "tank.p (b)");
-        let wrong = Choice { x: Some("nothing".into()), ..choice };
+        let wrong = FigureOptions { x: Some("nothing".into()), ..choice };
         assert_eq!(super::figure(&runs, &wrong).unwrap_err(), "there is no variable `nothing`");
     }
 

@@ -2,9 +2,9 @@
 
 use std::fmt::{Display, Write as _};
 
-use super::decimate::{Points, decimate, staircase};
-use super::figure::{Figure, Panel, Series, colour};
-use super::ticks::{Ticks, ticks};
+use super::decimate::{CurvePoints, decimate, staircase};
+use super::figure::{Figure, FigurePanel, PlotSeries, colour};
+use super::ticks::{AxisTicks, ticks};
 
 /// Width of the picture.
 const WIDTH: f64 = 900.0;
@@ -17,7 +17,7 @@ const CHARACTER: f64 = 6.6;
 const LINE: f64 = 20.0;
 
 /// Where one panel stands.
-struct Frame {
+struct PanelFrame {
     left: f64,
     top: f64,
     width: f64,
@@ -26,7 +26,7 @@ struct Frame {
     y: (f64, f64),
 }
 
-impl Frame {
+impl PanelFrame {
     fn px(&self, x: f64) -> f64 {
         self.left + (x - self.x.0) / (self.x.1 - self.x.0) * self.width
     }
@@ -38,8 +38,8 @@ impl Frame {
 
 /// Draws a figure. The picture is 900 wide; its height follows the number of panels.
 pub fn write(figure: &Figure) -> String {
-    let plots: Vec<Prepared<'_>> = figure.panels.iter().map(|p| Prepared::new(p, figure)).collect();
-    let left = plots.iter().map(Prepared::label_width).fold(0.0, f64::max) + 44.0;
+    let plots: Vec<PanelAxes<'_>> = figure.panels.iter().map(|p| PanelAxes::new(p, figure)).collect();
+    let left = plots.iter().map(PanelAxes::label_width).fold(0.0, f64::max) + 44.0;
     let mut body = String::new();
     let mut y = if figure.title.is_empty() { 10.0 } else { 40.0 };
     for (i, plot) in plots.iter().enumerate() {
@@ -88,19 +88,19 @@ pub fn escape(text: &str) -> String {
 }
 
 /// A panel with its ranges and ticks.
-struct Prepared<'a> {
-    panel: &'a Panel,
+struct PanelAxes<'a> {
+    panel: &'a FigurePanel,
     x: (f64, f64),
     y: (f64, f64),
-    x_ticks: Ticks,
-    y_ticks: Ticks,
+    x_ticks: AxisTicks,
+    y_ticks: AxisTicks,
     height: f64,
 }
 
-impl<'a> Prepared<'a> {
-    fn new(panel: &'a Panel, figure: &Figure) -> Self {
+impl<'a> PanelAxes<'a> {
+    fn new(panel: &'a FigurePanel, figure: &Figure) -> Self {
         let own = panel.bounds().unwrap_or((0.0, 1.0, 0.0, 1.0));
-        let shared = || figure.panels.iter().filter_map(Panel::bounds).map(|b| (b.0, b.1));
+        let shared = || figure.panels.iter().filter_map(FigurePanel::bounds).map(|b| (b.0, b.1));
         let x = if figure.shared_x {
             shared().reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((0.0, 1.0))
         } else {
@@ -118,7 +118,7 @@ impl<'a> Prepared<'a> {
             if panel.words.is_empty() { widened((own.2, own.3), 0.06) } else { (-0.3, panel.words.len() as f64 - 0.7) };
         let y_ticks =
             if panel.words.is_empty() { ticks(y.0, y.1, (height / 45.0) as usize) } else { words(&panel.words) };
-        Prepared { panel, x, y, x_ticks: ticks(x.0, x.1, 8), y_ticks, height }
+        PanelAxes { panel, x, y, x_ticks: ticks(x.0, x.1, 8), y_ticks, height }
     }
 
     fn label_width(&self) -> f64 {
@@ -129,7 +129,7 @@ impl<'a> Prepared<'a> {
     /// Draws at height `y` and returns where the next panel begins.
     fn draw(&self, out: &mut String, index: usize, y: f64, left: f64, with_x_label: bool) -> f64 {
         let legend_height = self.legend(out, y, left);
-        let frame = Frame {
+        let frame = PanelFrame {
             left,
             top: y + legend_height,
             width: WIDTH - left - RIGHT,
@@ -192,7 +192,7 @@ impl<'a> Prepared<'a> {
         line - y + 10.0
     }
 
-    fn axes(&self, out: &mut String, frame: &Frame, with_x_label: bool) {
+    fn axes(&self, out: &mut String, frame: &PanelFrame, with_x_label: bool) {
         let (l, t, w, h) = (frame.left, frame.top, frame.width, frame.height);
         let bottom = t + h;
         let mut grid = String::new();
@@ -251,8 +251,8 @@ fn with_power(label: &str, power: i32) -> String {
     }
 }
 
-fn words(words: &[String]) -> Ticks {
-    Ticks { marks: words.iter().enumerate().map(|(i, w)| (i as f64, w.clone())).collect(), power: 0 }
+fn words(words: &[String]) -> AxisTicks {
+    AxisTicks { marks: words.iter().enumerate().map(|(i, w)| (i as f64, w.clone())).collect(), power: 0 }
 }
 
 /// The range with a margin of this part on both sides; never empty.
@@ -282,7 +282,7 @@ fn cross(x: f64, y: f64) -> String {
     format!("M{:.1} {:.1}l{size} {size}m-{size} 0l{size} -{size}", x - ARM, y - ARM)
 }
 
-fn curve(out: &mut String, series: &Series, frame: &Frame) {
+fn curve(out: &mut String, series: &PlotSeries, frame: &PanelFrame) {
     if series.crosses {
         let finite = series.x.iter().zip(&series.y).filter(|(x, y)| x.is_finite() && y.is_finite());
         let data: String = finite.map(|(&x, &y)| cross(frame.px(x), frame.py(y))).collect();
@@ -294,7 +294,7 @@ fn curve(out: &mut String, series: &Series, frame: &Frame) {
         );
         return;
     }
-    let points: Points = if series.held {
+    let points: CurvePoints = if series.held {
         staircase(&series.x, &series.y)
     } else {
         series.x.iter().copied().zip(series.y.iter().copied()).collect()
@@ -311,7 +311,7 @@ fn curve(out: &mut String, series: &Series, frame: &Frame) {
 }
 
 /// Path data; a gap in the points lifts the pen.
-fn path(points: &[(f64, f64)], frame: &Frame) -> String {
+fn path(points: &[(f64, f64)], frame: &PanelFrame) -> String {
     let mut data = String::new();
     let mut pen = 'M';
     for &(x, y) in points {
@@ -327,40 +327,40 @@ fn path(points: &[(f64, f64)], frame: &Frame) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::figure::{Band, Panel, Series};
+    use super::super::figure::{FigurePanel, PlotBand, PlotSeries};
     use super::*;
 
     /// Two panels, one of them with words.
     pub(crate) fn sample() -> Figure {
         let x: Vec<f64> = (0..=20).map(|i| f64::from(i) * 0.1).collect();
         let y: Vec<f64> = x.iter().map(|x| 150.0 + 60.0 * (3.0 * x).sin()).collect();
-        let pressure = Series { name: "pump.b.p".into(), x: x.clone(), y: y.clone(), ..Series::default() };
-        let band = Band {
+        let pressure = PlotSeries { name: "pump.b.p".into(), x: x.clone(), y: y.clone(), ..PlotSeries::default() };
+        let band = PlotBand {
             x: x.clone(),
             low: y.iter().map(|v| v - 5.0).collect(),
             high: y.iter().map(|v| v + 5.0).collect(),
             colour: 0,
         };
-        let mode = Series {
+        let mode = PlotSeries {
             name: "valve<mode>".into(),
             x: vec![0.0, 0.7, 2.0],
             y: vec![0.0, 1.0, 1.0],
             held: true,
-            ..Series::default()
+            ..PlotSeries::default()
         };
-        let first = Panel {
+        let first = FigurePanel {
             x_label: "time in s".into(),
             y_label: "pressure in bar".into(),
             series: vec![pressure],
             bands: vec![band],
-            ..Panel::default()
+            ..FigurePanel::default()
         };
-        let second = Panel {
+        let second = FigurePanel {
             x_label: "time in s".into(),
             y_label: String::new(),
             words: vec!["closed".into(), "open".into()],
             series: vec![mode],
-            ..Panel::default()
+            ..FigurePanel::default()
         };
         Figure { title: "Relief & pump".into(), panels: vec![first, second], shared_x: true }
     }
@@ -374,9 +374,12 @@ mod tests {
     fn empty_constant_and_infinite_curves_are_drawn() {
         for y in [vec![], vec![5.0; 3], vec![f64::NAN, f64::INFINITY, 1.0], vec![0.0, -1e308, 1e308]] {
             let x = (0..y.len()).map(|i| i as f64).collect();
-            let series = vec![Series { name: "a".into(), x, y, ..Series::default() }];
-            let figure =
-                Figure { panels: vec![Panel { series, ..Panel::default() }], shared_x: true, ..Figure::default() };
+            let series = vec![PlotSeries { name: "a".into(), x, y, ..PlotSeries::default() }];
+            let figure = Figure {
+                panels: vec![FigurePanel { series, ..FigurePanel::default() }],
+                shared_x: true,
+                ..Figure::default()
+            };
             let text = write(&figure);
             assert!(text.starts_with("<svg") && !text.contains("NaN") && !text.contains("inf"), "{text}");
         }

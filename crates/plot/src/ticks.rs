@@ -2,7 +2,7 @@
 
 /// Where the ticks of an axis stand and what is written beside them.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Ticks {
+pub(super) struct AxisTicks {
     /// Places and texts, growing.
     pub marks: Vec<(f64, String)>,
     /// The numbers are to be multiplied by ten to this power; said in the axis label.
@@ -10,10 +10,10 @@ pub(super) struct Ticks {
 }
 
 /// About `count` ticks at round numbers between `low` and `high`.
-pub(super) fn ticks(low: f64, high: f64, count: usize) -> Ticks {
+pub(super) fn ticks(low: f64, high: f64, count: usize) -> AxisTicks {
     let range = high - low;
     if !range.is_finite() || range <= 0.0 {
-        return Ticks { marks: Vec::new(), power: 0 };
+        return AxisTicks { marks: Vec::new(), power: 0 };
     }
     let step = round_step(range / count.max(1) as f64);
     let power = common_power(low.abs().max(high.abs()));
@@ -26,7 +26,7 @@ pub(super) fn ticks(low: f64, high: f64, count: usize) -> Ticks {
         let text = format!("{:.decimals$}", place / unit);
         (place, if text.trim_matches(['-', '0', '.']).is_empty() { "0".to_owned() } else { text })
     });
-    Ticks { marks: marks.collect(), power }
+    AxisTicks { marks: marks.collect(), power }
 }
 
 /// The smallest of 1, 2, 5 times a power of ten that is not below `raw`.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 /// One cell.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cell<'a> {
+pub(super) struct TextCell<'a> {
     /// Its text, without surrounding blanks and quotes.
     pub text: Cow<'a, str>,
     /// Its bytes in the file.
@@ -14,17 +14,17 @@ pub(super) struct Cell<'a> {
 
 /// Walks over the rows that carry data: empty lines and lines that begin with `#` are skipped.
 #[derive(Clone, Debug)]
-pub(super) struct Rows<'a> {
+pub(super) struct CellRows<'a> {
     text: &'a str,
     at: usize,
     delimiter: u8,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> CellRows<'a> {
     /// Finds the delimiter in the first row: a tab, else a semicolon, else a comma.
     pub fn new(text: &'a str) -> Self {
         let at = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
-        let mut rows = Rows { text, at, delimiter: b',' };
+        let mut rows = CellRows { text, at, delimiter: b',' };
         rows.skip_remarks();
         let rest = &text[rows.at..];
         let head = unquoted(rest.lines().next().unwrap_or(""));
@@ -48,7 +48,7 @@ impl<'a> Rows<'a> {
     }
 
     /// Cuts the next row into `cells`; false at the end of the text.
-    pub fn next_row(&mut self, cells: &mut Vec<Cell<'a>>) -> bool {
+    pub fn next_row(&mut self, cells: &mut Vec<TextCell<'a>>) -> bool {
         cells.clear();
         self.skip_remarks();
         if self.at >= self.text.len() {
@@ -74,7 +74,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The cell at the current place and where it ends.
-    fn cell(&self) -> (Cell<'a>, usize) {
+    fn cell(&self) -> (TextCell<'a>, usize) {
         let bytes = self.text.as_bytes();
         let blanks = bytes[self.at..].iter().take_while(|&&b| b == b' ').count();
         if bytes.get(self.at + blanks) == Some(&b'"') {
@@ -84,7 +84,7 @@ impl<'a> Rows<'a> {
         let raw = &self.text[self.at..end];
         let start = self.at + (raw.len() - raw.trim_start().len());
         let text = raw.trim();
-        (Cell { text: Cow::Borrowed(text), place: start..start + text.len() }, end)
+        (TextCell { text: Cow::Borrowed(text), place: start..start + text.len() }, end)
     }
 
     fn end_of_plain(&self, from: usize) -> usize {
@@ -93,7 +93,7 @@ impl<'a> Rows<'a> {
     }
 
     /// A cell in quotes; doubled quotes inside stand for one. A quote that is never closed ends with the text.
-    fn quoted(&self, open: usize) -> (Cell<'a>, usize) {
+    fn quoted(&self, open: usize) -> (TextCell<'a>, usize) {
         let bytes = self.text.as_bytes();
         let mut at = open + 1;
         let close = loop {
@@ -106,7 +106,7 @@ impl<'a> Rows<'a> {
         let inner = &self.text[open + 1..close];
         let text = if inner.contains('"') { Cow::Owned(inner.replace("\"\"", "\"")) } else { Cow::Borrowed(inner) };
         let after = (close + 1).min(self.text.len());
-        (Cell { text, place: open..after }, self.end_of_plain(after))
+        (TextCell { text, place: open..after }, self.end_of_plain(after))
     }
 }
 
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     fn all(text: &str) -> Vec<Vec<String>> {
-        let mut rows = Rows::new(text);
+        let mut rows = CellRows::new(text);
         let mut out = Vec::new();
         let mut cells = Vec::new();
         while rows.next_row(&mut cells) {
@@ -150,7 +150,7 @@ mod tests {
     #[test]
     fn cells_know_their_place() {
         let text = "t, x\n0,  12 \n";
-        let mut rows = Rows::new(text);
+        let mut rows = CellRows::new(text);
         let mut cells = Vec::new();
         rows.next_row(&mut cells);
         rows.next_row(&mut cells);

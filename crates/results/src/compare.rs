@@ -4,11 +4,11 @@ use serde::Serialize;
 
 use super::delay::delay;
 use super::trajectory::{Kind, Trajectory};
-use super::tube::{Tube, interpolate};
+use super::tube::{ToleranceTube, interpolate};
 
 /// How far a result may lie from the reference: the half widths of the tube around the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tolerance {
+pub struct TubeTolerance {
     /// Part of the signal's range (largest minus least value of the reference; of its size where it is constant).
     pub relative: f64,
     /// In the signal's unit; added to the relative part.
@@ -17,16 +17,16 @@ pub struct Tolerance {
     pub time: Option<f64>,
 }
 
-impl Default for Tolerance {
+impl Default for TubeTolerance {
     /// The width `csv-compare` takes: 0.2 % of the range in both directions.
     fn default() -> Self {
-        Tolerance { relative: 0.002, absolute: 0.0, time: None }
+        TubeTolerance { relative: 0.002, absolute: 0.0, time: None }
     }
 }
 
 /// What came out for all signals.
 #[derive(Clone, Debug, Serialize)]
-pub struct Comparison {
+pub struct TrajectoryComparison {
     /// True when no signal left its tube.
     pub within: bool,
     /// One entry a pair of signals, in the order asked for.
@@ -74,18 +74,18 @@ pub struct SignalComparison {
 }
 
 /// A curve without empty cells.
-struct Curve {
+struct ComparisonCurve {
     times: Vec<f64>,
     values: Vec<f64>,
     held: bool,
 }
 
-impl Curve {
+impl ComparisonCurve {
     fn new(trajectory: &Trajectory, index: usize) -> Self {
         let column = &trajectory.columns[index];
         let full = trajectory.times.iter().zip(column).filter(|(_, v)| !v.is_nan());
         let (times, values) = full.map(|(&t, &v)| (t, v)).unzip();
-        Curve { times, values, held: trajectory.signals[index].kind.is_discrete() }
+        ComparisonCurve { times, values, held: trajectory.signals[index].kind.is_discrete() }
     }
 
     fn at(&self, time: f64) -> Option<f64> {
@@ -101,7 +101,7 @@ impl Curve {
     }
 
     /// Half height of the tube for a relative and an absolute part.
-    fn height(&self, tolerance: Tolerance) -> f64 {
+    fn height(&self, tolerance: TubeTolerance) -> f64 {
         let low = self.values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let range = if high > low { high - low } else { high.abs() };
@@ -114,11 +114,11 @@ pub fn compare(
     reference: &Trajectory,
     result: &Trajectory,
     pairs: &[(usize, usize)],
-    tolerance: Tolerance,
-) -> Comparison {
+    tolerance: TubeTolerance,
+) -> TrajectoryComparison {
     let signals: Vec<SignalComparison> =
         pairs.iter().map(|&(a, b)| compare_signal(reference, result, a, b, tolerance)).collect();
-    Comparison { within: signals.iter().all(|s| s.within), signals }
+    TrajectoryComparison { within: signals.iter().all(|s| s.within), signals }
 }
 
 fn compare_signal(
@@ -126,11 +126,11 @@ fn compare_signal(
     result: &Trajectory,
     a: usize,
     b: usize,
-    tolerance: Tolerance,
+    tolerance: TubeTolerance,
 ) -> SignalComparison {
     let (signal, other) = (&reference.signals[a], &result.signals[b]);
-    let mut left = Curve::new(reference, a);
-    let mut right = Curve::new(result, b);
+    let mut left = ComparisonCurve::new(reference, a);
+    let mut right = ComparisonCurve::new(result, b);
     align_literals(&mut right, &signal.kind, &other.kind);
     left.held |= right.held;
     right.held |= left.held;
@@ -166,7 +166,7 @@ fn compare_signal(
 }
 
 /// Two files may number the literals of an enumeration differently: the result's numbers become the reference's.
-fn align_literals(curve: &mut Curve, reference: &Kind, result: &Kind) {
+fn align_literals(curve: &mut ComparisonCurve, reference: &Kind, result: &Kind) {
     let (Kind::Enumeration(ours), Kind::Enumeration(theirs)) = (reference, result) else { return };
     for value in &mut curve.values {
         let literal = theirs.get(*value as usize - 1);
@@ -176,7 +176,7 @@ fn align_literals(curve: &mut Curve, reference: &Kind, result: &Kind) {
 }
 
 /// Root mean square and largest difference over the reference's rows that the result covers.
-fn differences(out: &mut SignalComparison, left: &Curve, right: &Curve) {
+fn differences(out: &mut SignalComparison, left: &ComparisonCurve, right: &ComparisonCurve) {
     let (mut sum, mut size, mut n) = (0.0, 0.0, 0.0);
     let mut largest: Option<(f64, f64)> = None;
     for (k, (time, value)) in left.points().enumerate() {
@@ -198,7 +198,7 @@ fn differences(out: &mut SignalComparison, left: &Curve, right: &Curve) {
 }
 
 /// The curve at a time; before the event where the asker stands before it and the curve jumps there too.
-fn nearest_side(curve: &Curve, time: f64, before: bool) -> Option<f64> {
+fn nearest_side(curve: &ComparisonCurve, time: f64, before: bool) -> Option<f64> {
     let first = curve.times.partition_point(|&t| t < time);
     if before && curve.times.get(first) == Some(&time) {
         return curve.values.get(first).copied();
@@ -207,8 +207,8 @@ fn nearest_side(curve: &Curve, time: f64, before: bool) -> Option<f64> {
 }
 
 /// Counts the result's points, and its values at the reference's times, that lie outside the tube.
-fn violations(out: &mut SignalComparison, left: &Curve, right: &Curve) {
-    let mut tube = Tube::new(&left.times, &left.values, left.held, out.time_tolerance, out.tolerance);
+fn violations(out: &mut SignalComparison, left: &ComparisonCurve, right: &ComparisonCurve) {
+    let mut tube = ToleranceTube::new(&left.times, &left.values, left.held, out.time_tolerance, out.tolerance);
     let between = left.times.iter().filter(|&&t| right.times.binary_search_by(|x| x.total_cmp(&t)).is_err());
     let between = between.filter_map(|&t| right.at(t).map(|v| (t, v)));
     let mut points: Vec<(f64, f64)> = right.points().chain(between).collect();
@@ -225,7 +225,7 @@ fn violations(out: &mut SignalComparison, left: &Curve, right: &Curve) {
     }
 }
 
-fn reason(out: &SignalComparison, left: &Curve, right: &Curve) -> Option<String> {
+fn reason(out: &SignalComparison, left: &ComparisonCurve, right: &ComparisonCurve) -> Option<String> {
     let (Some(&end), Some(&start)) = (left.times.last(), left.times.first()) else {
         return Some("the reference holds no value".to_owned());
     };
@@ -246,8 +246,8 @@ fn reason(out: &SignalComparison, left: &Curve, right: &Curve) -> Option<String>
 
 /// The edges of the tube around a signal, for pictures: times, lower and upper edge.
 pub fn tube(reference: &Trajectory, index: usize, height: f64, width: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
-    let curve = Curve::new(reference, index);
-    let mut tube = Tube::new(&curve.times, &curve.values, curve.held, width, height);
+    let curve = ComparisonCurve::new(reference, index);
+    let mut tube = ToleranceTube::new(&curve.times, &curve.values, curve.held, width, height);
     // The edges bend half a width before and after each point.
     let mut times: Vec<f64> = curve.times.iter().flat_map(|&t| [t - width, t, t + width]).collect();
     times.sort_by(f64::total_cmp);

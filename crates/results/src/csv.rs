@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::texts::Texts;
+use super::texts::NumberTextCache;
 use super::trajectory::{Kind, Signal};
 
 /// Where a CSV says its units.
@@ -38,7 +38,7 @@ impl std::str::FromStr for CsvUnits {
 pub struct CsvWriter<W: Write> {
     out: W,
     kinds: Vec<Kind>,
-    texts: Texts,
+    texts: NumberTextCache,
     line: Vec<u8>,
     bytes: u64,
 }
@@ -77,7 +77,7 @@ impl<W: Write> CsvWriter<W> {
         }
         let line = line.into_bytes();
         let kinds = signals.iter().map(|s| s.kind.clone()).collect();
-        let mut writer = CsvWriter { out, kinds, texts: Texts::default(), line, bytes: 0 };
+        let mut writer = CsvWriter { out, kinds, texts: NumberTextCache::default(), line, bytes: 0 };
         writer.flush_line()?;
         Ok(writer)
     }
@@ -85,7 +85,7 @@ impl<W: Write> CsvWriter<W> {
     /// Goes on behind `bytes` that an earlier writer of the same signals has written.
     pub fn resume(out: W, signals: &[Signal], bytes: u64) -> Self {
         let kinds = signals.iter().map(|s| s.kind.clone()).collect();
-        CsvWriter { out, kinds, texts: Texts::default(), line: Vec::new(), bytes }
+        CsvWriter { out, kinds, texts: NumberTextCache::default(), line: Vec::new(), bytes }
     }
 
     /// Hands everything to the system and returns how many bytes were written so far.
@@ -148,7 +148,7 @@ fn push_name(line: &mut String, name: &str) {
     }
 }
 
-fn push_value(line: &mut Vec<u8>, texts: &mut Texts, kind: &Kind, value: f64) {
+fn push_value(line: &mut Vec<u8>, texts: &mut NumberTextCache, kind: &Kind, value: f64) {
     match kind {
         Kind::Boolean if !value.is_nan() => line.extend_from_slice(if value == 0.0 { b"false" } else { b"true" }),
         Kind::Enumeration(literals) => match literal(literals, value) {

@@ -6,14 +6,14 @@ use wildmatch::WildMatch;
 
 /// Patterns of which at least one must match.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Globs {
+pub struct GlobPatterns {
     patterns: Vec<String>,
 }
 
-impl Globs {
+impl GlobPatterns {
     /// Takes lists such as `cyl.*,pump.b.p`; commas inside brackets or quotes do not part patterns.
     pub fn new<S: AsRef<str>>(lists: &[S]) -> Self {
-        Globs { patterns: lists.iter().flat_map(|list| split_list(list.as_ref())).collect() }
+        GlobPatterns { patterns: lists.iter().flat_map(|list| split_list(list.as_ref())).collect() }
     }
 
     /// True when there is no pattern at all.
@@ -81,8 +81,8 @@ mod tests {
 
     #[test]
     fn patterns() {
-        let yes = |p: &str, n: &str| assert!(Globs::new(&[p]).matches(n), "{p} should match {n}");
-        let no = |p: &str, n: &str| assert!(!Globs::new(&[p]).matches(n), "{p} should not match {n}");
+        let yes = |p: &str, n: &str| assert!(GlobPatterns::new(&[p]).matches(n), "{p} should match {n}");
+        let no = |p: &str, n: &str| assert!(!GlobPatterns::new(&[p]).matches(n), "{p} should not match {n}");
         yes("cyl.*", "cyl.a.p");
         yes("v[1].p", "v[1].p");
         no("v[1].p", "v1.p");
@@ -101,12 +101,12 @@ mod tests {
         yes("*.p", "a[1].p[2]");
         no("v", "v[1].p");
         no("v[1]", "v[12]");
-        assert!(Globs::new(&["A"]).names("A[1,2]"));
+        assert!(GlobPatterns::new(&["A"]).names("A[1,2]"));
     }
 
     #[test]
     fn unused_patterns() {
-        let globs = Globs::new(&["a.*,b", "c?"]);
+        let globs = GlobPatterns::new(&["a.*,b", "c?"]);
         assert_eq!(globs.unused(["a.x", "cd"].into_iter()), ["b"]);
     }
 

@@ -15,9 +15,9 @@ mod texts;
 pub mod trajectory;
 mod tube;
 
-pub use compare::{Comparison, Tolerance, compare};
+pub use compare::{TrajectoryComparison, TubeTolerance, compare};
 pub use csv::{CsvUnits, CsvWriter, csv_bytes_per_row};
-pub use glob::Globs;
-pub use recording::{Strictness, read_csv};
+pub use glob::GlobPatterns;
+pub use recording::{ReadStrictness, read_csv};
 pub use said_units::contradiction;
 pub use trajectory::{Kind, Signal, Trajectory};

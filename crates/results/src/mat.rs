@@ -26,7 +26,7 @@ const LARGEST: u64 = i32::MAX as u64;
 /// # Errors
 /// What `out` reports, and [`io::ErrorKind::FileTooLarge`] beyond 2 GB, which the format does not hold.
 pub fn write(mut out: impl Write, trajectory: &Trajectory) -> io::Result<()> {
-    let plan = Plan::new(trajectory);
+    let plan = MatLayout::new(trajectory);
     let bytes = (plan.moving.len() as u64 + 1) * trajectory.len() as u64 * 8;
     if bytes > LARGEST {
         let text = "a Modelica .mat file holds at most 2 GB: choose fewer variables, a longer output interval, or CSV";
@@ -54,7 +54,7 @@ pub fn write_matrix(out: &mut impl Write, name: &str, rows: usize, values: &[f64
 }
 
 /// Where each signal's values go.
-struct Plan {
+struct MatLayout {
     /// Per signal: matrix (1 or 2) and row, counted from 1; row 1 is time.
     rows: Vec<(i32, i32)>,
     /// Signals whose values make the rows of `data_1`, after time.
@@ -63,9 +63,9 @@ struct Plan {
     moving: Vec<usize>,
 }
 
-impl Plan {
+impl MatLayout {
     fn new(trajectory: &Trajectory) -> Self {
-        let mut plan = Plan { rows: Vec::new(), constant: Vec::new(), moving: Vec::new() };
+        let mut plan = MatLayout { rows: Vec::new(), constant: Vec::new(), moving: Vec::new() };
         let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
         for (i, column) in trajectory.columns.iter().enumerate() {
             let like = known.entry(fingerprint(column)).or_default();
@@ -152,7 +152,7 @@ fn describe(signal: &Signal) -> String {
     }
 }
 
-fn write_info(out: &mut impl Write, plan: &Plan) -> io::Result<()> {
+fn write_info(out: &mut impl Write, plan: &MatLayout) -> io::Result<()> {
     header(out, "dataInfo", INT32, 4, plan.rows.len() + 1)?;
     let infos = std::iter::once([0, 1, 0, -1]).chain(plan.rows.iter().map(|&(matrix, row)| [matrix, row, 0, -1]));
     for word in infos.flatten() {
@@ -161,7 +161,7 @@ fn write_info(out: &mut impl Write, plan: &Plan) -> io::Result<()> {
     Ok(())
 }
 
-fn write_constants(out: &mut impl Write, trajectory: &Trajectory, plan: &Plan) -> io::Result<()> {
+fn write_constants(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayout) -> io::Result<()> {
     header(out, "data_1", DOUBLE, plan.constant.len() + 1, 2)?;
     let ends = [trajectory.times.first(), trajectory.times.last()];
     for time in ends {
@@ -174,7 +174,7 @@ fn write_constants(out: &mut impl Write, trajectory: &Trajectory, plan: &Plan) -
     Ok(())
 }
 
-fn write_moving(out: &mut impl Write, trajectory: &Trajectory, plan: &Plan) -> io::Result<()> {
+fn write_moving(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayout) -> io::Result<()> {
     header(out, "data_2", DOUBLE, plan.moving.len() + 1, trajectory.len())?;
     for (row, time) in trajectory.times.iter().enumerate() {
         out.write_all(&time.to_le_bytes())?;
@@ -186,7 +186,7 @@ fn write_moving(out: &mut impl Write, trajectory: &Trajectory, plan: &Plan) -> i
 }
 
 /// One matrix as read.
-struct Matrix<'a> {
+struct MatMatrix<'a> {
     name: String,
     kind: i32,
     rows: usize,
@@ -251,7 +251,7 @@ fn signal(name: &str, description: &str) -> Signal {
     signal
 }
 
-fn matrices(bytes: &[u8]) -> Result<Vec<Matrix<'_>>, String> {
+fn matrices(bytes: &[u8]) -> Result<Vec<MatMatrix<'_>>, String> {
     let damaged = || "the file is damaged or no .mat file of version 4".to_owned();
     let mut at = 0;
     let mut all = Vec::new();
@@ -269,7 +269,7 @@ fn matrices(bytes: &[u8]) -> Result<Vec<Matrix<'_>>, String> {
         let end = from.checked_add(length).ok_or_else(damaged)?;
         let data = bytes.get(from..end).ok_or_else(damaged)?;
         let title = String::from_utf8_lossy(&bytes[at + 20..from]).trim_end_matches('\0').to_owned();
-        all.push(Matrix { name: title, kind, rows, columns, bytes: data });
+        all.push(MatMatrix { name: title, kind, rows, columns, bytes: data });
         at = end;
     }
     Ok(all)
@@ -285,7 +285,7 @@ fn element_bytes(kind: i32) -> Option<usize> {
     }
 }
 
-impl Matrix<'_> {
+impl MatMatrix<'_> {
     fn element(&self, index: usize) -> Option<f64> {
         let width = element_bytes(self.kind)?;
         let b = self.bytes.get(index * width..(index + 1) * width)?;
@@ -365,7 +365,7 @@ mod tests {
 
     #[test]
     fn equal_and_constant_signals_share_rows() {
-        let plan = Plan::new(&sample());
+        let plan = MatLayout::new(&sample());
         assert_eq!(plan.rows, [(2, 2), (2, 3), (1, 2), (2, 2), (1, 2)]);
     }
 

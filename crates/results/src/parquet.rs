@@ -9,7 +9,7 @@ pub use writer::{ParquetWriter, write_table};
 
 /// The values of one column of a group of rows.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Values<'a> {
+pub enum ColumnValues<'a> {
     /// Numbers; NaN where there is none.
     Real(Vec<f64>),
     /// Whole numbers; `None` where there is none.
@@ -22,7 +22,7 @@ pub enum Values<'a> {
 
 #[cfg(feature = "parquet")]
 mod writer {
-    use super::Values;
+    use super::ColumnValues;
     use crate::trajectory::{Kind, Signal};
     use ::parquet::basic::{LogicalType, Repetition, Type as Physical};
     use ::parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
@@ -35,7 +35,7 @@ mod writer {
     use std::sync::Arc;
 
     /// What stands in the head of a column.
-    struct Head {
+    struct ColumnHeader {
         name: String,
         unit: String,
         kind: Physical,
@@ -54,9 +54,10 @@ mod writer {
         /// # Errors
         /// What `out` reports.
         pub fn new(out: W, signals: &[Signal]) -> io::Result<Self> {
-            let time = Head { name: "time".into(), unit: "s".into(), kind: Physical::DOUBLE };
-            let head = |s: &Signal| Head { name: s.name.clone(), unit: s.unit.clone(), kind: physical(&s.kind) };
-            let heads: Vec<Head> = std::iter::once(time).chain(signals.iter().map(head)).collect();
+            let time = ColumnHeader { name: "time".into(), unit: "s".into(), kind: Physical::DOUBLE };
+            let head =
+                |s: &Signal| ColumnHeader { name: s.name.clone(), unit: s.unit.clone(), kind: physical(&s.kind) };
+            let heads: Vec<ColumnHeader> = std::iter::once(time).chain(signals.iter().map(head)).collect();
             let kinds = std::iter::once(Kind::Real).chain(signals.iter().map(|s| s.kind.clone())).collect();
             Ok(ParquetWriter { file: begin(out, &heads)?, kinds })
         }
@@ -89,14 +90,14 @@ mod writer {
     ///
     /// # Errors
     /// What `out` reports.
-    pub fn write_table(out: impl Write + Send, columns: &[(String, Values<'_>)]) -> io::Result<()> {
-        let kind = |values: &Values<'_>| match values {
-            Values::Real(_) => Physical::DOUBLE,
-            Values::Integer(_) => Physical::INT64,
-            Values::Boolean(_) => Physical::BOOLEAN,
-            Values::Text(_) => Physical::BYTE_ARRAY,
+    pub fn write_table(out: impl Write + Send, columns: &[(String, ColumnValues<'_>)]) -> io::Result<()> {
+        let kind = |values: &ColumnValues<'_>| match values {
+            ColumnValues::Real(_) => Physical::DOUBLE,
+            ColumnValues::Integer(_) => Physical::INT64,
+            ColumnValues::Boolean(_) => Physical::BOOLEAN,
+            ColumnValues::Text(_) => Physical::BYTE_ARRAY,
         };
-        let head = |(name, values): &(String, Values<'_>)| Head {
+        let head = |(name, values): &(String, ColumnValues<'_>)| ColumnHeader {
             name: name.clone(),
             unit: String::new(),
             kind: kind(values),
@@ -106,7 +107,7 @@ mod writer {
         file.finish().map(|_| ()).map_err(reported)
     }
 
-    fn begin<W: Write + Send>(out: W, heads: &[Head]) -> io::Result<SerializedFileWriter<W>> {
+    fn begin<W: Write + Send>(out: W, heads: &[ColumnHeader]) -> io::Result<SerializedFileWriter<W>> {
         let fields: Result<Vec<_>, ParquetError> = heads.iter().map(|h| field(h).map(Arc::new)).collect();
         let root =
             Type::group_type_builder("schema").with_fields(fields.map_err(reported)?).build().map_err(reported)?;
@@ -125,7 +126,7 @@ mod writer {
     }
 
     /// A column of the schema; only numbers are always there.
-    fn field(head: &Head) -> Result<Type, ParquetError> {
+    fn field(head: &ColumnHeader) -> Result<Type, ParquetError> {
         let always = head.kind == Physical::DOUBLE;
         Type::primitive_type_builder(&head.name, head.kind)
             .with_repetition(if always { Repetition::REQUIRED } else { Repetition::OPTIONAL })
@@ -135,7 +136,7 @@ mod writer {
 
     fn write_group<'a, W: Write + Send>(
         file: &mut SerializedFileWriter<W>,
-        columns: impl Iterator<Item = Values<'a>>,
+        columns: impl Iterator<Item = ColumnValues<'a>>,
     ) -> io::Result<()> {
         let mut group = file.next_row_group().map_err(reported)?;
         for values in columns {
@@ -146,14 +147,14 @@ mod writer {
         group.close().map(|_| ()).map_err(reported)
     }
 
-    fn write_column(column: &mut SerializedColumnWriter<'_>, values: Values<'_>) -> Result<(), ParquetError> {
+    fn write_column(column: &mut SerializedColumnWriter<'_>, values: ColumnValues<'_>) -> Result<(), ParquetError> {
         match values {
-            Values::Real(v) => {
+            ColumnValues::Real(v) => {
                 column.typed::<DoubleType>().write_batch(&v, None, None)?;
             }
-            Values::Integer(v) => write_known::<Int64Type>(column, v)?,
-            Values::Boolean(v) => write_known::<BoolType>(column, v)?,
-            Values::Text(v) => {
+            ColumnValues::Integer(v) => write_known::<Int64Type>(column, v)?,
+            ColumnValues::Boolean(v) => write_known::<BoolType>(column, v)?,
+            ColumnValues::Text(v) => {
                 write_known::<ByteArrayType>(column, v.into_iter().map(|t| t.map(ByteArray::from)).collect())?;
             }
         }
@@ -180,15 +181,15 @@ mod writer {
     }
 
     /// The values of a signal as what they stand for.
-    fn values(kind: &Kind, column: impl Iterator<Item = f64>) -> Values<'_> {
+    fn values(kind: &Kind, column: impl Iterator<Item = f64>) -> ColumnValues<'_> {
         let known = |v: f64| Some(v).filter(|v| !v.is_nan());
         match kind {
-            Kind::Real => Values::Real(column.collect()),
-            Kind::Integer => Values::Integer(column.map(|v| known(v).map(|v| v as i64)).collect()),
-            Kind::Boolean => Values::Boolean(column.map(|v| known(v).map(|v| v != 0.0)).collect()),
+            Kind::Real => ColumnValues::Real(column.collect()),
+            Kind::Integer => ColumnValues::Integer(column.map(|v| known(v).map(|v| v as i64)).collect()),
+            Kind::Boolean => ColumnValues::Boolean(column.map(|v| known(v).map(|v| v != 0.0)).collect()),
             Kind::Enumeration(literals) => {
                 let literal = |v: f64| literals.get((v - 1.0) as usize).filter(|_| v >= 1.0).map(String::as_str);
-                Values::Text(column.map(literal).collect())
+                ColumnValues::Text(column.map(literal).collect())
             }
         }
     }

@@ -7,15 +7,15 @@ use std::ops::Range;
 
 use indexmap::IndexMap;
 
-use super::cells::{Cell, Rows};
+use super::cells::{CellRows, TextCell};
 use super::number;
 use super::trajectory::{Kind, Signal, Trajectory};
-use bramah_expr::units::Unit;
-use bramah_syntax::diag::{Checked, Code, Diagnostic, FileId, Sources, Span};
+use bramah_expr::units::MeasurementUnit;
+use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources, Span, StageResult};
 
 /// What is asked of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Strictness<'a> {
+pub enum ReadStrictness<'a> {
     /// Every column is read. Empty cells, words (`true`, literals) and rows of equal time are fine.
     Result,
     /// Only these columns are read, and must hold numbers. Time must not fall and have no gaps; rows of equal time are jumps.
@@ -44,24 +44,24 @@ pub fn read_csv(
     sources: &Sources,
     file: FileId,
     time_column: Option<&str>,
-    strictness: Strictness<'_>,
-) -> Checked<Trajectory> {
-    let mut rows = Rows::new(&sources.get(file).text);
+    strictness: ReadStrictness<'_>,
+) -> StageResult<Trajectory> {
+    let mut rows = CellRows::new(&sources.get(file).text);
     let mut cells = Vec::new();
     if !rows.next_row(&mut cells) {
-        return Checked::failed(vec![
+        return StageResult::failed(vec![
             Diagnostic::new(Code::BadData, "the file holds no data")
                 .at(Span { file, start: 0, end: 0 }, "a row of column names is expected here"),
         ]);
     }
-    let mut head = Head::new(file, &cells, rows.decimal_comma());
+    let mut head = HeaderRow::new(file, &cells, rows.decimal_comma());
     let (time, wanted) = match head.choose(time_column, strictness) {
         Ok(chosen) => chosen,
-        Err(diagnostics) => return Checked::failed(diagnostics),
+        Err(diagnostics) => return StageResult::failed(diagnostics),
     };
-    let strict = strictness != Strictness::Result;
-    let mut reader = Reader::new(file, time, &wanted, head.width, strict, rows.decimal_comma());
-    reader.jumps = matches!(strictness, Strictness::Inputs(_));
+    let strict = strictness != ReadStrictness::Result;
+    let mut reader = RecordingReader::new(file, time, &wanted, head.width, strict, rows.decimal_comma());
+    reader.jumps = matches!(strictness, ReadStrictness::Inputs(_));
     let mut first = true;
     while rows.next_row(&mut cells) {
         if !(std::mem::take(&mut first) && head.take_units(&cells, time, rows.decimal_comma())) {
@@ -74,18 +74,18 @@ pub fn read_csv(
 /// The names of the columns of a CSV text, without units.
 pub fn column_names(text: &str) -> Vec<String> {
     let mut cells = Vec::new();
-    Rows::new(text).next_row(&mut cells);
+    CellRows::new(text).next_row(&mut cells);
     cells.iter().map(|c| split_unit(&c.text).0.to_owned()).collect()
 }
 
 /// The unit that the file itself gives a column, and where it does.
 pub(super) fn unit_place(sources: &Sources, file: FileId, column: &str) -> Option<(String, Span)> {
-    let mut rows = Rows::new(&sources.get(file).text);
+    let mut rows = CellRows::new(&sources.get(file).text);
     let mut cells = Vec::new();
     if !rows.next_row(&mut cells) {
         return None;
     }
-    let mut head = Head::new(file, &cells, rows.decimal_comma());
+    let mut head = HeaderRow::new(file, &cells, rows.decimal_comma());
     let index = head.find(column).ok()?;
     if rows.next_row(&mut cells) {
         let time = (0..head.width).find(|&i| cells.get(i).is_some_and(|c| !c.text.is_empty())).unwrap_or(0);
@@ -97,7 +97,7 @@ pub(super) fn unit_place(sources: &Sources, file: FileId, column: &str) -> Optio
 
 /// A column that is read.
 #[derive(Clone, Copy, Debug)]
-struct Wanted {
+struct ColumnRequest {
     /// Its index in the file.
     index: usize,
     /// Every cell must hold a number.
@@ -105,7 +105,7 @@ struct Wanted {
 }
 
 /// The row of names, and of units where there is one.
-struct Head {
+struct HeaderRow {
     file: FileId,
     names: Vec<String>,
     units: Vec<String>,
@@ -116,9 +116,9 @@ struct Head {
     numeric: bool,
 }
 
-impl Head {
-    fn new(file: FileId, cells: &[Cell<'_>], decimal_comma: bool) -> Self {
-        let mut head = Head {
+impl HeaderRow {
+    fn new(file: FileId, cells: &[TextCell<'_>], decimal_comma: bool) -> Self {
+        let mut head = HeaderRow {
             file,
             names: Vec::new(),
             units: Vec::new(),
@@ -145,8 +145,8 @@ impl Head {
     fn choose(
         &self,
         time_column: Option<&str>,
-        strictness: Strictness<'_>,
-    ) -> Result<(usize, Vec<Wanted>), Vec<Diagnostic>> {
+        strictness: ReadStrictness<'_>,
+    ) -> Result<(usize, Vec<ColumnRequest>), Vec<Diagnostic>> {
         if self.numeric {
             let place = self.places[0].clone();
             return Err(vec![
@@ -159,9 +159,9 @@ impl Head {
             None => self.usual_time(),
         };
         let wanted = match strictness {
-            Strictness::Result => self.all_but(time)?,
-            Strictness::Inputs(inputs) => self.named(inputs, &[])?,
-            Strictness::Recording { inputs, outputs } => self.named(inputs, outputs)?,
+            ReadStrictness::Result => self.all_but(time)?,
+            ReadStrictness::Inputs(inputs) => self.named(inputs, &[])?,
+            ReadStrictness::Recording { inputs, outputs } => self.named(inputs, outputs)?,
         };
         Ok((time, wanted))
     }
@@ -171,9 +171,9 @@ impl Head {
         TIME_NAMES.iter().find_map(|usual| same(usual)).unwrap_or(0)
     }
 
-    fn all_but(&self, time: usize) -> Result<Vec<Wanted>, Vec<Diagnostic>> {
+    fn all_but(&self, time: usize) -> Result<Vec<ColumnRequest>, Vec<Diagnostic>> {
         let columns = (0..self.width).filter(|&i| i != time && !self.names[i].is_empty());
-        let wanted: Vec<Wanted> = columns.map(|index| Wanted { index, complete: false }).collect();
+        let wanted: Vec<ColumnRequest> = columns.map(|index| ColumnRequest { index, complete: false }).collect();
         if wanted.is_empty() {
             let place = self.places[time].clone();
             return Err(vec![self.error(place, "the file has no column besides time", "the only column")]);
@@ -181,13 +181,13 @@ impl Head {
         Ok(wanted)
     }
 
-    fn named(&self, inputs: &[String], outputs: &[String]) -> Result<Vec<Wanted>, Vec<Diagnostic>> {
+    fn named(&self, inputs: &[String], outputs: &[String]) -> Result<Vec<ColumnRequest>, Vec<Diagnostic>> {
         let mut wanted = Vec::new();
         let mut problems = Vec::new();
         let all = inputs.iter().map(|n| (n, true)).chain(outputs.iter().map(|n| (n, false)));
         for (name, complete) in all {
             match self.find(name) {
-                Ok(index) => wanted.push(Wanted { index, complete }),
+                Ok(index) => wanted.push(ColumnRequest { index, complete }),
                 Err(problem) => problems.push(problem),
             }
         }
@@ -221,8 +221,8 @@ impl Head {
     }
 
     /// Takes the row as units when it holds words only, also in the time column.
-    fn take_units(&mut self, cells: &[Cell<'_>], time: usize, decimal_comma: bool) -> bool {
-        let is_word = |c: &Cell<'_>| !c.text.is_empty() && number::parse(&c.text, decimal_comma).is_none();
+    fn take_units(&mut self, cells: &[TextCell<'_>], time: usize, decimal_comma: bool) -> bool {
+        let is_word = |c: &TextCell<'_>| !c.text.is_empty() && number::parse(&c.text, decimal_comma).is_none();
         // `1` is the unit of what has none
         let words_only = cells.iter().all(|c| c.text.is_empty() || is_word(c) || c.text.trim() == "1");
         if cells.len() != self.width || !words_only || !cells.get(time).is_some_and(is_word) {
@@ -255,7 +255,7 @@ fn span(file: FileId, place: &Range<usize>) -> Span {
 
 /// What can be wrong with a cell or row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Fault {
+enum CellFault {
     Length,
     NoTime,
     TimeFalls,
@@ -267,14 +267,14 @@ enum Fault {
 }
 
 /// The first cell with a fault, and how many there are.
-struct Found {
+struct FaultRecord {
     place: Range<usize>,
     text: String,
     count: usize,
 }
 
 /// Values of one column as they come in.
-struct Column {
+struct ColumnBuilder {
     index: usize,
     complete: bool,
     values: Vec<f64>,
@@ -283,7 +283,7 @@ struct Column {
     numbers: bool,
 }
 
-struct Reader {
+struct RecordingReader {
     file: FileId,
     time: usize,
     width: usize,
@@ -293,20 +293,27 @@ struct Reader {
     decimal_comma: bool,
     times: Vec<f64>,
     time_places: Vec<Range<usize>>,
-    columns: Vec<Column>,
-    faults: IndexMap<(Fault, usize), Found>,
+    columns: Vec<ColumnBuilder>,
+    faults: IndexMap<(CellFault, usize), FaultRecord>,
 }
 
-impl Reader {
-    fn new(file: FileId, time: usize, wanted: &[Wanted], width: usize, strict: bool, decimal_comma: bool) -> Self {
-        let column = |w: &Wanted| Column {
+impl RecordingReader {
+    fn new(
+        file: FileId,
+        time: usize,
+        wanted: &[ColumnRequest],
+        width: usize,
+        strict: bool,
+        decimal_comma: bool,
+    ) -> Self {
+        let column = |w: &ColumnRequest| ColumnBuilder {
             index: w.index,
             complete: w.complete,
             values: Vec::new(),
             words: IndexMap::new(),
             numbers: false,
         };
-        Reader {
+        RecordingReader {
             file,
             time,
             width,
@@ -320,8 +327,8 @@ impl Reader {
         }
     }
 
-    fn fault(&mut self, fault: Fault, column: usize, place: &Range<usize>, text: impl Into<String>) {
-        let found = self.faults.entry((fault, column)).or_insert_with(|| Found {
+    fn fault(&mut self, fault: CellFault, column: usize, place: &Range<usize>, text: impl Into<String>) {
+        let found = self.faults.entry((fault, column)).or_insert_with(|| FaultRecord {
             place: place.clone(),
             text: text.into(),
             count: 0,
@@ -329,12 +336,12 @@ impl Reader {
         found.count += 1;
     }
 
-    fn row(&mut self, cells: &[Cell<'_>], names: &[String]) {
+    fn row(&mut self, cells: &[TextCell<'_>], names: &[String]) {
         let surplus = cells.len() == self.width + 1 && cells[self.width].text.is_empty();
         if cells.len() != self.width && !surplus {
             let place = cells[0].place.start..cells[cells.len() - 1].place.end;
             let said = format!("{} cells instead of {}", cells.len(), self.width);
-            self.fault(Fault::Length, 0, &place, said);
+            self.fault(CellFault::Length, 0, &place, said);
             return;
         }
         if !self.take_time(&cells[self.time]) {
@@ -346,17 +353,17 @@ impl Reader {
         }
     }
 
-    fn take_time(&mut self, cell: &Cell<'_>) -> bool {
+    fn take_time(&mut self, cell: &TextCell<'_>) -> bool {
         let Some(time) = number::parse(&cell.text, self.decimal_comma).filter(|t| t.is_finite()) else {
-            self.fault(Fault::NoTime, 0, &cell.place, cell.text.as_ref());
+            self.fault(CellFault::NoTime, 0, &cell.place, cell.text.as_ref());
             return false;
         };
         if let Some(&last) = self.times.last() {
             let said = format!("{} after {}", number::text(time), number::text(last));
             if time < last {
-                self.fault(Fault::TimeFalls, 0, &cell.place, said);
+                self.fault(CellFault::TimeFalls, 0, &cell.place, said);
             } else if time == last && self.strict && !self.jumps {
-                self.fault(Fault::TimeStands, 0, &cell.place, said);
+                self.fault(CellFault::TimeStands, 0, &cell.place, said);
             }
         }
         self.times.push(time);
@@ -366,7 +373,7 @@ impl Reader {
         true
     }
 
-    fn cell(&mut self, i: usize, cell: &Cell<'_>, name: &str) {
+    fn cell(&mut self, i: usize, cell: &TextCell<'_>, name: &str) {
         let column = &mut self.columns[i];
         let value = number::parse(&cell.text, self.decimal_comma).or_else(|| self.strict.then(|| truth(&cell.text))?);
         let (index, complete) = (column.index, column.complete);
@@ -375,13 +382,13 @@ impl Reader {
                 column.numbers = true;
                 column.values.push(value);
                 if self.strict && !value.is_finite() {
-                    self.fault(Fault::NotFinite, index, &cell.place, name);
+                    self.fault(CellFault::NotFinite, index, &cell.place, name);
                 }
             }
             None if cell.text.is_empty() => {
                 column.values.push(f64::NAN);
                 if complete {
-                    self.fault(Fault::Empty, index, &cell.place, name);
+                    self.fault(CellFault::Empty, index, &cell.place, name);
                 }
             }
             None if !self.strict && !column.numbers => {
@@ -390,7 +397,7 @@ impl Reader {
             }
             _ => {
                 column.values.push(f64::NAN);
-                self.fault(Fault::Word, index, &cell.place, cell.text.as_ref());
+                self.fault(CellFault::Word, index, &cell.place, cell.text.as_ref());
             }
         }
     }
@@ -416,12 +423,12 @@ impl Reader {
                     number::rounded(usual, 4)
                 );
                 let place = self.time_places[i + 1].clone();
-                self.fault(Fault::Gap, 0, &place, said);
+                self.fault(CellFault::Gap, 0, &place, said);
             }
         }
     }
 
-    fn finish(mut self, head: &Head, wanted: &[Wanted]) -> Checked<Trajectory> {
+    fn finish(mut self, head: &HeaderRow, wanted: &[ColumnRequest]) -> StageResult<Trajectory> {
         if self.strict && self.faults.is_empty() {
             self.look_for_gaps();
         }
@@ -435,7 +442,7 @@ impl Reader {
             diagnostics.push(head.error(end, "the file has names but no rows", "nothing below"));
         }
         if !diagnostics.is_empty() {
-            return Checked::failed(diagnostics);
+            return StageResult::failed(diagnostics);
         }
         let doubt = self.strict.then(|| self.doubt_seconds(head)).flatten();
         in_seconds(&mut self.times, &head.units[self.time]);
@@ -447,12 +454,12 @@ impl Reader {
             trajectory.signals.push(signal);
             trajectory.columns.push(values);
         }
-        Checked::new(trajectory, doubt.into_iter().collect())
+        StageResult::new(trajectory, doubt.into_iter().collect())
     }
 
     /// A warning where times without a unit, which are read as seconds, look like counted milliseconds: equal steps of
     /// one or more over a thousand and more. Steps of whole minutes are how slow rigs are sampled.
-    fn doubt_seconds(&self, head: &Head) -> Option<Diagnostic> {
+    fn doubt_seconds(&self, head: &HeaderRow) -> Option<Diagnostic> {
         let name = &head.names[self.time];
         let says_seconds = name.to_ascii_lowercase().ends_with("_s");
         if !head.units[self.time].is_empty() || says_seconds {
@@ -490,7 +497,7 @@ impl Reader {
 
 /// Times in another unit become seconds; a unit that is none of time is taken as a remark.
 fn in_seconds(times: &mut [f64], unit: &str) {
-    if let (Ok(unit), Ok(second)) = (Unit::parse(unit), Unit::parse("s"))
+    if let (Ok(unit), Ok(second)) = (MeasurementUnit::parse(unit), MeasurementUnit::parse("s"))
         && !unit.dimension.is_none()
     {
         times.iter_mut().for_each(|t| *t = unit.convert(*t, &second).unwrap_or(*t));
@@ -507,7 +514,7 @@ fn truth(word: &str) -> Option<f64> {
 }
 
 /// Columns of words are Booleans or enumerations.
-fn typed(mut column: Column) -> (Kind, Vec<f64>) {
+fn typed(mut column: ColumnBuilder) -> (Kind, Vec<f64>) {
     if column.words.is_empty() {
         return (Kind::Real, column.values);
     }
@@ -523,29 +530,29 @@ fn typed(mut column: Column) -> (Kind, Vec<f64>) {
     }
 }
 
-fn describe(file: FileId, fault: Fault, column: &str, found: &Found) -> Diagnostic {
+fn describe(file: FileId, fault: CellFault, column: &str, found: &FaultRecord) -> Diagnostic {
     let text = &found.text;
     let (message, label, help) = match fault {
-        Fault::Length => ("a row has another length than the row of names".to_owned(), text.clone(), ""),
-        Fault::NoTime => ("a row has no time".to_owned(), format!("`{text}` is no number"), ""),
-        Fault::TimeFalls => (
+        CellFault::Length => ("a row has another length than the row of names".to_owned(), text.clone(), ""),
+        CellFault::NoTime => ("a row has no time".to_owned(), format!("`{text}` is no number"), ""),
+        CellFault::TimeFalls => (
             "time runs backwards".to_owned(),
             text.clone(),
             "sort the rows, or cut the file where a new recording begins",
         ),
-        Fault::TimeStands => ("time does not grow".to_owned(), text.clone(), "keep one row of each time"),
-        Fault::Gap => ("the recording has a gap".to_owned(), text.clone(), "cut the file at the gap, or fill it"),
-        Fault::Word => (
+        CellFault::TimeStands => ("time does not grow".to_owned(), text.clone(), "keep one row of each time"),
+        CellFault::Gap => ("the recording has a gap".to_owned(), text.clone(), "cut the file at the gap, or fill it"),
+        CellFault::Word => (
             format!("a word stands in column `{column}` where a number is needed"),
             format!("`{text}` is no number"),
             "",
         ),
-        Fault::Empty => (
+        CellFault::Empty => (
             format!("a cell of the input `{text}` is empty"),
             "inputs must be complete".to_owned(),
             "fill it, or cut the file",
         ),
-        Fault::NotFinite => (format!("a value of `{text}` is not finite"), "NaN or infinite".to_owned(), ""),
+        CellFault::NotFinite => (format!("a value of `{text}` is not finite"), "NaN or infinite".to_owned(), ""),
     };
     let label = if found.count > 1 { format!("{label} (first of {})", found.count) } else { label };
     let diagnostic = Diagnostic::new(Code::BadData, message).at(span(file, &found.place), label);

@@ -6,7 +6,7 @@ fn read(text: &str, inputs: &[&str], outputs: &[&str]) -> (Option<Trajectory>, S
     let file = sources.add("u.csv", text);
     let own = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect::<Vec<_>>();
     let (inputs, outputs) = (own(inputs), own(outputs));
-    let checked = read_csv(&sources, file, None, Strictness::Recording { inputs: &inputs, outputs: &outputs });
+    let checked = read_csv(&sources, file, None, ReadStrictness::Recording { inputs: &inputs, outputs: &outputs });
     let said = short_list(&sources, &checked.diagnostics);
     (checked.value, said)
 }
@@ -14,7 +14,7 @@ fn read(text: &str, inputs: &[&str], outputs: &[&str]) -> (Option<Trajectory>, S
 fn result(text: &str) -> Trajectory {
     let mut sources = Sources::default();
     let file = sources.add("r.csv", text);
-    let checked = read_csv(&sources, file, None, Strictness::Result);
+    let checked = read_csv(&sources, file, None, ReadStrictness::Result);
     assert_eq!(short_list(&sources, &checked.diagnostics), "");
     checked.value.unwrap()
 }
@@ -89,7 +89,7 @@ fn the_nearest_name_is_offered() {
     let mut sources = Sources::default();
     let file = sources.add("u.csv", "t_s,tau_N,q_m\n0,1,2\n");
     let inputs = ["tau_M".to_owned()];
-    let checked = read_csv(&sources, file, None, Strictness::Recording { inputs: &inputs, outputs: &[] });
+    let checked = read_csv(&sources, file, None, ReadStrictness::Recording { inputs: &inputs, outputs: &[] });
     assert_eq!(checked.diagnostics[0].help, ["did you mean `tau_N`?"]);
 }
 
@@ -98,8 +98,8 @@ proptest::proptest! {
     fn never_panics(text in "(?s)(time,u,y\n)?[\"\r\n,;\t# .1eé-]{0,60}") {
         let mut sources = Sources::default();
         let file = sources.add("r.csv", text);
-        let _ = read_csv(&sources, file, None, Strictness::Result);
+        let _ = read_csv(&sources, file, None, ReadStrictness::Result);
         let inputs = ["u".to_owned()];
-        let _ = read_csv(&sources, file, Some("time"), Strictness::Recording { inputs: &inputs, outputs: &[] });
+        let _ = read_csv(&sources, file, Some("time"), ReadStrictness::Recording { inputs: &inputs, outputs: &[] });
     }
 }

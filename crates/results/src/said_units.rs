@@ -1,7 +1,7 @@
 //! The unit of a column where the file says one and its reader another.
 
 use super::recording::unit_place;
-use bramah_expr::units::Unit;
+use bramah_expr::units::MeasurementUnit;
 use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources};
 
 /// An error where the file gives a column a unit that is not `said`, which the reader gives it; it shows the file's
@@ -10,7 +10,7 @@ use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources};
 /// Two spellings of one unit agree. What cannot be read as a unit says nothing.
 pub fn contradiction(sources: &Sources, file: FileId, column: &str, said: &str) -> Option<Diagnostic> {
     let (own, place) = unit_place(sources, file, column)?;
-    let (a, b) = (Unit::parse(&own).ok()?, Unit::parse(said).ok()?);
+    let (a, b) = (MeasurementUnit::parse(&own).ok()?, MeasurementUnit::parse(said).ok()?);
     if agree(&a, &b) {
         return None;
     }
@@ -19,9 +19,9 @@ pub fn contradiction(sources: &Sources, file: FileId, column: &str, said: &str) 
 }
 
 /// True where both give a value the same meaning.
-fn agree(own: &Unit, said: &Unit) -> bool {
+fn agree(own: &MeasurementUnit, said: &MeasurementUnit) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
-    if *own == Unit::ONE && !said.dimension.is_none() {
+    if *own == MeasurementUnit::ONE && !said.dimension.is_none() {
         // loggers put `1` where they know no unit
         return true;
     }

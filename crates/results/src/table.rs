@@ -2,16 +2,16 @@
 
 use std::ops::Range;
 
-use super::cells::{Cell, Rows};
+use super::cells::{CellRows, TextCell};
 use super::number;
-use bramah_syntax::diag::{Code, Diagnostic, FileId, Source, Sources, Span};
+use bramah_syntax::diag::{Code, Diagnostic, FileId, SourceText, Sources, Span};
 
 /// What parts numbers in the text format.
 const PARTS: [char; 5] = [' ', '\t', ',', ';', '\r'];
 
 /// A matrix that knows where in its file each number stands.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Matrix {
+pub struct TableMatrix {
     /// The file.
     pub file: FileId,
     /// Number of rows, at least 1.
@@ -26,7 +26,7 @@ pub struct Matrix {
 
 /// Which numbers of a table are abscissae, and how they must follow each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Axes {
+pub enum TableAxes {
     /// The first column does not decrease: times, of which two equal ones make a jump.
     Times,
     /// The first column increases.
@@ -35,15 +35,19 @@ pub enum Axes {
     Grid,
 }
 
-impl Axes {
+impl TableAxes {
     /// By the number that stands for it in the library: 0, 1 and 2 in the order of the variants.
-    pub fn from_number(number: f64) -> Option<Axes> {
-        [Axes::Times, Axes::Column, Axes::Grid].into_iter().zip([0.0, 1.0, 2.0]).find(|a| a.1 == number).map(|a| a.0)
+    pub fn from_number(number: f64) -> Option<TableAxes> {
+        [TableAxes::Times, TableAxes::Column, TableAxes::Grid]
+            .into_iter()
+            .zip([0.0, 1.0, 2.0])
+            .find(|a| a.1 == number)
+            .map(|a| a.0)
     }
 
     /// The smallest table of use.
     fn least(self) -> (usize, usize) {
-        if self == Axes::Grid { (3, 3) } else { (2, 2) }
+        if self == TableAxes::Grid { (3, 3) } else { (2, 2) }
     }
 }
 
@@ -53,11 +57,11 @@ impl Axes {
 ///
 /// # Errors
 /// [`Code::BadData`] with the place: no table of this name, no number, rows of different length.
-pub fn read_table(sources: &Sources, file: FileId, name: &str) -> Result<Matrix, Box<Diagnostic>> {
+pub fn read_table(sources: &Sources, file: FileId, name: &str) -> Result<TableMatrix, Box<Diagnostic>> {
     let source = sources.get(file);
     let text = source.text.strip_prefix('\u{feff}').unwrap_or(&source.text);
     if text.starts_with("#1") {
-        return Listing { file, source, at: source.text.len() - text.len() }.table(name);
+        return TextTableScanner { file, source, at: source.text.len() - text.len() }.table(name);
     }
     read_csv_table(file, source)
 }
@@ -79,11 +83,11 @@ fn finite(word: &str, decimal_comma: bool) -> Option<f64> {
     number::parse(word, decimal_comma).filter(|value| value.is_finite())
 }
 
-fn read_csv_table(file: FileId, source: &Source) -> Result<Matrix, Box<Diagnostic>> {
-    let mut rows = Rows::new(&source.text);
+fn read_csv_table(file: FileId, source: &SourceText) -> Result<TableMatrix, Box<Diagnostic>> {
+    let mut rows = CellRows::new(&source.text);
     let comma = rows.decimal_comma();
-    let mut matrix = Matrix { file, rows: 0, columns: 0, values: Vec::new(), places: Vec::new() };
-    let mut cells: Vec<Cell<'_>> = Vec::new();
+    let mut matrix = TableMatrix { file, rows: 0, columns: 0, values: Vec::new(), places: Vec::new() };
+    let mut cells: Vec<TextCell<'_>> = Vec::new();
     let mut first = true;
     while rows.next_row(&mut cells) {
         let words = std::mem::take(&mut first).then(|| {
@@ -114,27 +118,27 @@ fn read_csv_table(file: FileId, source: &Source) -> Result<Matrix, Box<Diagnosti
     }
 }
 
-fn is_number(cell: Option<&Cell<'_>>, decimal_comma: bool) -> bool {
+fn is_number(cell: Option<&TextCell<'_>>, decimal_comma: bool) -> bool {
     cell.is_some_and(|c| finite(&c.text, decimal_comma).is_some())
 }
 
 /// A file in the text format, read from a place on.
-struct Listing<'a> {
+struct TextTableScanner<'a> {
     file: FileId,
-    source: &'a Source,
+    source: &'a SourceText,
     at: usize,
 }
 
 /// `double name(rows, columns)`.
-struct Head<'a> {
+struct MatrixHeader<'a> {
     name: &'a str,
     rows: usize,
     columns: usize,
     place: Range<usize>,
 }
 
-impl<'a> Listing<'a> {
-    fn table(mut self, name: &str) -> Result<Matrix, Box<Diagnostic>> {
+impl<'a> TextTableScanner<'a> {
+    fn table(mut self, name: &str) -> Result<TableMatrix, Box<Diagnostic>> {
         let start = self.at;
         let mut known = Vec::new();
         while let Some((line, place)) = self.line() {
@@ -166,7 +170,7 @@ impl<'a> Listing<'a> {
         Some((line, place))
     }
 
-    fn head(&self, line: &'a str, place: &Range<usize>) -> Result<Option<Head<'a>>, Box<Diagnostic>> {
+    fn head(&self, line: &'a str, place: &Range<usize>) -> Result<Option<MatrixHeader<'a>>, Box<Diagnostic>> {
         let line = line.trim_start();
         let Some(rest) = line.strip_prefix("double").or_else(|| line.strip_prefix("float")) else { return Ok(None) };
         let parts = rest.split_once('(').and_then(|(name, sizes)| Some((name.trim(), sizes.trim().strip_suffix(')')?)));
@@ -176,7 +180,7 @@ impl<'a> Listing<'a> {
         });
         match sizes {
             Some((name, rows, columns)) if rows > 0 && columns > 0 && rows <= usize::MAX / columns => {
-                Ok(Some(Head { name, rows, columns, place: place.clone() }))
+                Ok(Some(MatrixHeader { name, rows, columns, place: place.clone() }))
             }
             _ => Err(wrong(
                 self.file,
@@ -188,10 +192,15 @@ impl<'a> Listing<'a> {
     }
 
     /// The numbers below a head, in rows of any form.
-    fn numbers(mut self, head: &Head<'a>) -> Result<Matrix, Box<Diagnostic>> {
+    fn numbers(mut self, head: &MatrixHeader<'a>) -> Result<TableMatrix, Box<Diagnostic>> {
         let count = head.rows * head.columns;
-        let mut matrix =
-            Matrix { file: self.file, rows: head.rows, columns: head.columns, values: Vec::new(), places: Vec::new() };
+        let mut matrix = TableMatrix {
+            file: self.file,
+            rows: head.rows,
+            columns: head.columns,
+            values: Vec::new(),
+            places: Vec::new(),
+        };
         while matrix.values.len() < count {
             let Some((line, place)) = self.line() else { break };
             if self.head(line, &place).is_ok_and(|head| head.is_some()) {
@@ -222,28 +231,28 @@ impl<'a> Listing<'a> {
     }
 }
 
-impl Matrix {
+impl TableMatrix {
     /// Whether the table is large enough and its abscissae follow each other as they must.
     ///
     /// # Errors
     /// [`Code::BadData`] at the number that does not.
-    pub fn check(&self, axes: Axes) -> Result<(), Box<Diagnostic>> {
+    pub fn check(&self, axes: TableAxes) -> Result<(), Box<Diagnostic>> {
         let (rows, columns) = axes.least();
         if self.rows < rows || self.columns < columns {
             let message = format!("a table of {} rows and {} columns is too small", self.rows, self.columns);
             return Err(wrong(self.file, &self.places[0], message, format!("at least {rows} of {columns} are needed")));
         }
-        let first = usize::from(axes == Axes::Grid);
+        let first = usize::from(axes == TableAxes::Grid);
         self.follow((first..self.rows).map(|i| i * self.columns), axes)?;
-        if axes == Axes::Grid { self.follow(1..self.columns, axes) } else { Ok(()) }
+        if axes == TableAxes::Grid { self.follow(1..self.columns, axes) } else { Ok(()) }
     }
 
-    fn follow(&self, axis: impl Iterator<Item = usize>, axes: Axes) -> Result<(), Box<Diagnostic>> {
+    fn follow(&self, axis: impl Iterator<Item = usize>, axes: TableAxes) -> Result<(), Box<Diagnostic>> {
         let mut before: Option<f64> = None;
         for i in axis {
             let x = self.values[i];
             let (fits, must) = match axes {
-                Axes::Times => (before.is_none_or(|b| x >= b), "must not decrease"),
+                TableAxes::Times => (before.is_none_or(|b| x >= b), "must not decrease"),
                 _ => (before.is_none_or(|b| x > b), "must increase"),
             };
             if !fits {
@@ -263,7 +272,7 @@ mod tests {
     use bramah_syntax::diag::render::short_list;
 
     /// The table, or what is wrong with it.
-    fn read(text: &str, name: &str, axes: Axes) -> String {
+    fn read(text: &str, name: &str, axes: TableAxes) -> String {
         let mut sources = Sources::default();
         let file = sources.add("t.txt", text);
         match read_table(&sources, file, name).and_then(|m| m.check(axes).map(|()| m)) {
@@ -276,11 +285,11 @@ mod tests {
     fn both_formats() {
         let listing = "#1\n# pump\ndouble a(2,2) # first\n 0 1\n 1 2\nfloat map(3, 3)\n0 0 1\n0, 1, 2\n1 3;4\n";
         let said = [
-            read(listing, "", Axes::Column),
-            read(listing, "map", Axes::Grid),
-            read("\u{feff}time [s];p\r\n0;1,5\r\n1;2\r\n", "any", Axes::Column),
-            read("n\\p,0,1\n0,1,2\n1,3,4\n", "", Axes::Grid),
-            read("0,0\n1,2\n1,3\n", "", Axes::Times),
+            read(listing, "", TableAxes::Column),
+            read(listing, "map", TableAxes::Grid),
+            read("\u{feff}time [s];p\r\n0;1,5\r\n1;2\r\n", "any", TableAxes::Column),
+            read("n\\p,0,1\n0,1,2\n1,3,4\n", "", TableAxes::Grid),
+            read("0,0\n1,2\n1,3\n", "", TableAxes::Times),
         ];
         insta::assert_snapshot!(said.concat());
     }
@@ -288,23 +297,23 @@ mod tests {
     #[test]
     fn mistakes_have_a_place() {
         let said = [
-            read("", "", Axes::Column),
-            read("x,y\n", "", Axes::Column),
-            read("0,1\n1\n", "", Axes::Column),
-            read("0,1\n1,a\n", "", Axes::Column),
-            read("0,1\n1,\n", "", Axes::Column),
-            read("0,1\n2,1\n1,1\n", "", Axes::Column),
-            read("0,1\n0,1\n", "", Axes::Column),
-            read("0,1\n-1,1\n", "", Axes::Times),
-            read("0,2,1\n0,1,2\n1,3,4\n", "", Axes::Grid),
-            read("0,1\n", "", Axes::Column),
-            read("0,inf\n1,2\n", "", Axes::Column),
-            read("#1\n", "", Axes::Column),
-            read("#1\ndouble a(2,2)\n0 1\n1 2\n", "b", Axes::Column),
-            read("#1\ndouble a(2;2)\n", "", Axes::Column),
-            read("#1\ndouble a(2,2)\n0 1\n1\ndouble b(1,1)\n0\n", "a", Axes::Column),
-            read("#1\ndouble a(2,2)\n0 1\n1 x\n", "a", Axes::Column),
-            read("#1\ndouble a(1,2)\n0 1 2\n", "a", Axes::Column),
+            read("", "", TableAxes::Column),
+            read("x,y\n", "", TableAxes::Column),
+            read("0,1\n1\n", "", TableAxes::Column),
+            read("0,1\n1,a\n", "", TableAxes::Column),
+            read("0,1\n1,\n", "", TableAxes::Column),
+            read("0,1\n2,1\n1,1\n", "", TableAxes::Column),
+            read("0,1\n0,1\n", "", TableAxes::Column),
+            read("0,1\n-1,1\n", "", TableAxes::Times),
+            read("0,2,1\n0,1,2\n1,3,4\n", "", TableAxes::Grid),
+            read("0,1\n", "", TableAxes::Column),
+            read("0,inf\n1,2\n", "", TableAxes::Column),
+            read("#1\n", "", TableAxes::Column),
+            read("#1\ndouble a(2,2)\n0 1\n1 2\n", "b", TableAxes::Column),
+            read("#1\ndouble a(2;2)\n", "", TableAxes::Column),
+            read("#1\ndouble a(2,2)\n0 1\n1\ndouble b(1,1)\n0\n", "a", TableAxes::Column),
+            read("#1\ndouble a(2,2)\n0 1\n1 x\n", "a", TableAxes::Column),
+            read("#1\ndouble a(1,2)\n0 1 2\n", "a", TableAxes::Column),
         ];
         insta::assert_snapshot!(said.concat());
     }
@@ -312,7 +321,7 @@ mod tests {
     proptest::proptest! {
         #[test]
         fn never_panics(text in "(?s)(#1\n)?(double |a|\\(|2|,|\\)|;| |\n|#|1e9|é|-){0,40}") {
-            for axes in [Axes::Times, Axes::Column, Axes::Grid] {
+            for axes in [TableAxes::Times, TableAxes::Column, TableAxes::Grid] {
                 read(&text, "", axes);
             }
         }

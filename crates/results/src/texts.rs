@@ -9,7 +9,7 @@ const ENTRIES: usize = 1024;
 const LONGEST: usize = 23;
 
 #[derive(Clone, Copy, Debug)]
-struct Entry {
+struct TextCacheEntry {
     bits: u64,
     len: u8,
     text: [u8; LONGEST],
@@ -17,25 +17,25 @@ struct Entry {
 
 /// The last texts of numbers, found by their bits.
 #[derive(Clone)]
-pub struct Texts {
-    entries: Vec<Entry>,
+pub struct NumberTextCache {
+    entries: Vec<TextCacheEntry>,
     digits: ryu::Buffer,
 }
 
-impl Default for Texts {
+impl Default for NumberTextCache {
     fn default() -> Self {
-        let nothing = Entry { bits: f64::NAN.to_bits(), len: 0, text: [0; LONGEST] };
-        Texts { entries: vec![nothing; ENTRIES], digits: ryu::Buffer::new() }
+        let nothing = TextCacheEntry { bits: f64::NAN.to_bits(), len: 0, text: [0; LONGEST] };
+        NumberTextCache { entries: vec![nothing; ENTRIES], digits: ryu::Buffer::new() }
     }
 }
 
-impl std::fmt::Debug for Texts {
+impl std::fmt::Debug for NumberTextCache {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Texts")
     }
 }
 
-impl Texts {
+impl NumberTextCache {
     /// Appends what [`super::number::push`] appends.
     pub fn push(&mut self, out: &mut Vec<u8>, value: f64) {
         if value.is_nan() {
@@ -71,7 +71,7 @@ mod tests {
     proptest! {
         #[test]
         fn as_without_memory(bits in prop::collection::vec(any::<u64>(), 1..50)) {
-            let mut texts = Texts::default();
+            let mut texts = NumberTextCache::default();
             for &bits in bits.iter().chain(bits.iter().rev()) {
                 let usual = (bits >> 20) as f64 * 10.0_f64.powi((bits % 40) as i32 - 30);
                 let value = f64::from_bits(bits);

@@ -8,7 +8,7 @@ use std::collections::VecDeque;
 
 /// A tube over a piecewise linear curve. Times asked for must not fall.
 #[derive(Debug)]
-pub(super) struct Tube<'a> {
+pub(super) struct ToleranceTube<'a> {
     times: &'a [f64],
     values: &'a [f64],
     held: bool,
@@ -19,10 +19,10 @@ pub(super) struct Tube<'a> {
     least: VecDeque<usize>,
 }
 
-impl<'a> Tube<'a> {
+impl<'a> ToleranceTube<'a> {
     /// `held`: the curve is a staircase. `times` and `values` are of equal length and without NaN.
     pub fn new(times: &'a [f64], values: &'a [f64], held: bool, dt: f64, dy: f64) -> Self {
-        Tube { times, values, held, dt, dy, next: 0, largest: VecDeque::new(), least: VecDeque::new() }
+        ToleranceTube { times, values, held, dt, dy, next: 0, largest: VecDeque::new(), least: VecDeque::new() }
     }
 
     /// Lower and upper edge at a time; `None` where the curve has no point within `dt`.
@@ -85,7 +85,7 @@ mod tests {
     #[test]
     fn a_jump_may_come_early_or_late() {
         let (times, values) = ([0.0, 1.0, 1.0, 2.0], [0.0, 0.0, 5.0, 5.0]);
-        let mut tube = Tube::new(&times, &values, false, 0.1, 0.5);
+        let mut tube = ToleranceTube::new(&times, &values, false, 0.1, 0.5);
         assert_eq!(tube.at(0.5), Some((-0.5, 0.5)));
         assert_eq!(tube.at(0.95), Some((-0.5, 5.5)));
         assert_eq!(tube.at(1.05), Some((-0.5, 5.5)));
@@ -97,14 +97,14 @@ mod tests {
     #[test]
     fn a_slope_widens_the_tube() {
         let (times, values) = ([0.0, 10.0], [0.0, 10.0]);
-        let mut tube = Tube::new(&times, &values, false, 1.0, 0.5);
+        let mut tube = ToleranceTube::new(&times, &values, false, 1.0, 0.5);
         assert_eq!(tube.at(5.0), Some((3.5, 6.5)));
     }
 
     #[test]
     fn without_width_in_time_an_event_allows_both_values() {
         let (times, values) = ([0.0, 1.0, 1.0, 2.0], [0.0, 0.0, 5.0, 5.0]);
-        let mut tube = Tube::new(&times, &values, false, 0.0, 0.0);
+        let mut tube = ToleranceTube::new(&times, &values, false, 0.0, 0.0);
         assert_eq!(tube.at(1.0), Some((0.0, 5.0)));
         assert_eq!(tube.at(1.5), Some((5.0, 5.0)));
     }

@@ -7,10 +7,10 @@
 //! close enough that steps do not pass over events, and rows are made here: states by interpolation, the rest and the
 //! derivatives by Newton's method.
 
-use super::ida::{Equations, Evaluation};
+use super::ida::{DaeEquations, EvaluationStatus};
 use super::linear::Lu;
-use super::model::Model;
-use crate::lower::{ColumnRole, System};
+use super::model::IntegrationModel;
+use crate::lower::{ColumnRole, ExecutableSystem};
 
 /// Weight of the derivatives in the matrix: so large that states do not move.
 pub const HOLD_STATES: f64 = 1e60;
@@ -27,7 +27,7 @@ const LOOSE: f64 = 10.0;
 
 /// The part of each unknown in the error test: as if states and algebraic unknowns were measured apart, each by the
 /// root of their mean square, so that the number of the ones does not change what the others may do.
-pub fn shares(system: &System) -> Vec<f64> {
+pub fn shares(system: &ExecutableSystem) -> Vec<f64> {
     let count = |role| system.columns.iter().filter(|c| c.role == role).count() as f64;
     let (n, states) = (system.columns.len() as f64, count(ColumnRole::State) + count(ColumnRole::Following));
     let algebraic = count(ColumnRole::Algebraic);
@@ -42,14 +42,14 @@ pub fn shares(system: &System) -> Vec<f64> {
 
 /// Factors of a Jacobian with [`HOLD_STATES`]; `solved` is false for each unknown whose derivative is sought instead: beside
 /// that, what an equation has of the unknown itself is no pivot.
-pub fn holding(system: &System, nominal: &[f64], solved: &[bool]) -> Lu {
+pub fn holding(system: &ExecutableSystem, nominal: &[f64], solved: &[bool]) -> Lu {
     let size = |(n, &solved): (&f64, &bool)| if solved { *n } else { n / HOLD_STATES };
     Lu::new(&system.pattern, &nominal.iter().zip(solved).map(size).collect::<Vec<f64>>())
 }
 
 /// Work done.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Effort {
+pub struct EvaluationCounts {
     /// Evaluations of the equations.
     pub residuals: u64,
     /// Evaluations of the Jacobian.
@@ -58,7 +58,7 @@ pub struct Effort {
 
 /// The solver, with the values it last found.
 #[derive(Debug)]
-pub struct Algebraic {
+pub struct AlgebraicSolver {
     /// False for each unknown that is a state; empty when all are, or none is.
     solved: Vec<bool>,
     /// Size of each unknown times the tolerance.
@@ -73,12 +73,12 @@ pub struct Algebraic {
     y: Vec<f64>,
     yp: Vec<f64>,
     /// Work done so far.
-    pub effort: Effort,
+    pub effort: EvaluationCounts,
 }
 
-impl Algebraic {
+impl AlgebraicSolver {
     /// For the unknowns of a system with these nominal values.
-    pub fn new(system: &System, nominal: &[f64], tolerance: f64) -> Self {
+    pub fn new(system: &ExecutableSystem, nominal: &[f64], tolerance: f64) -> Self {
         // states that follow from a quantity are interpolated like others where nothing else has to be solved
         let needed = system.columns.iter().any(|c| c.role == ColumnRole::Algebraic);
         Self::where_needed(system, nominal, tolerance, needed)
@@ -90,13 +90,13 @@ impl Algebraic {
     }
 
     /// The same, also where there are derivatives only.
-    pub fn with_rates(system: &System, nominal: &[f64], tolerance: f64) -> Self {
+    pub fn with_rates(system: &ExecutableSystem, nominal: &[f64], tolerance: f64) -> Self {
         Self::where_needed(system, nominal, tolerance, !system.columns.is_empty())
     }
 
-    fn where_needed(system: &System, nominal: &[f64], tolerance: f64, needed: bool) -> Self {
+    fn where_needed(system: &ExecutableSystem, nominal: &[f64], tolerance: f64, needed: bool) -> Self {
         let solved: Vec<bool> = system.columns.iter().map(|c| !c.is_differential()).collect();
-        Algebraic {
+        AlgebraicSolver {
             absolute: nominal.iter().map(|n| n * tolerance).collect(),
             relative: tolerance,
             lu: if needed { holding(system, nominal, &solved) } else { Lu::new(&Default::default(), &[]) },
@@ -107,14 +107,14 @@ impl Algebraic {
             y: Vec::new(),
             yp: Vec::new(),
             solved: if needed { solved } else { Vec::new() },
-            effort: Effort::default(),
+            effort: EvaluationCounts::default(),
         }
     }
 
     /// Unknowns and derivatives at `t`, with the states of `y`; as they were given when they cannot be solved.
     pub fn solve<'s>(
         &'s mut self,
-        model: &mut Model<'_>,
+        model: &mut IntegrationModel<'_>,
         t: f64,
         y: &'s [f64],
         yp: &'s [f64],
@@ -126,12 +126,18 @@ impl Algebraic {
     }
 
     /// The same; `None` when they cannot be solved.
-    pub fn solved(&mut self, model: &mut Model<'_>, t: f64, y: &[f64], yp: &[f64]) -> Option<(&[f64], &[f64])> {
+    pub fn solved(
+        &mut self,
+        model: &mut IntegrationModel<'_>,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Option<(&[f64], &[f64])> {
         self.iterate(model, t, y, yp).then_some((&self.y, &self.yp))
     }
 
     /// With the matrix at hand, or else with a new one from the values given.
-    fn iterate(&mut self, model: &mut Model<'_>, t: f64, y: &[f64], yp: &[f64]) -> bool {
+    fn iterate(&mut self, model: &mut IntegrationModel<'_>, t: f64, y: &[f64], yp: &[f64]) -> bool {
         self.begin(y, yp);
         if self.factored && self.converge(model, t, false) {
             return true;
@@ -147,7 +153,7 @@ impl Algebraic {
         self.yp.extend_from_slice(yp);
     }
 
-    fn converge(&mut self, model: &mut Model<'_>, t: f64, fresh: bool) -> bool {
+    fn converge(&mut self, model: &mut IntegrationModel<'_>, t: f64, fresh: bool) -> bool {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
             let Some(size) = self.correct(model, t) else { return false };
@@ -166,17 +172,19 @@ impl Algebraic {
         last <= 1.0
     }
 
-    fn factor(&mut self, model: &mut Model<'_>, t: f64) -> bool {
+    fn factor(&mut self, model: &mut IntegrationModel<'_>, t: f64) -> bool {
         self.effort.jacobians += 1;
-        let done = model.jacobian(t, HOLD_STATES, &self.y, &self.yp, &mut self.val) == Evaluation::Done;
+        let done = model.jacobian(t, HOLD_STATES, &self.y, &self.yp, &mut self.val) == EvaluationStatus::Done;
         self.factored = done && self.lu.factor(&self.val).is_ok();
         self.factored
     }
 
     /// One correction; the largest of an algebraic unknown, in tolerances. None when it is not finite.
-    fn correct(&mut self, model: &mut Model<'_>, t: f64) -> Option<f64> {
+    fn correct(&mut self, model: &mut IntegrationModel<'_>, t: f64) -> Option<f64> {
         self.effort.residuals += 1;
-        if model.residual(t, &self.y, &self.yp, &mut self.step) == Evaluation::Retry || !self.lu.solve(&mut self.step) {
+        if model.residual(t, &self.y, &self.yp, &mut self.step) == EvaluationStatus::Retry
+            || !self.lu.solve(&mut self.step)
+        {
             return None;
         }
         let mut largest = 0.0_f64;

@@ -1,10 +1,10 @@
 //! Running the sorted blocks of the event or initial system: assignments, algebraic loops, loops through discrete
 //! equations.
 
-use super::modes::Modes;
-use super::newton::{Newton, NewtonFailure, Reason, Scales};
-use super::stale::Stale;
-use crate::lower::{AssignCode, BlockCode, LoopCode, MixedCode, System, Target};
+use super::modes::CrossingModes;
+use super::newton::{Newton, NewtonFailure, NewtonFailureReason, VariableScales};
+use super::stale::StaleBlocks;
+use crate::lower::{AssignCode, AssignTarget, BlockCode, ExecutableSystem, LoopCode, MixedCode};
 use bramah_expr::VarId;
 use bramah_model::structure::Unknown;
 
@@ -19,42 +19,42 @@ pub enum BlockFailure {
     /// An algebraic loop.
     Loop(Box<NewtonFailure>),
     /// An explicit value that is not finite.
-    NonFinite(Target),
+    NonFinite(AssignTarget),
     /// Discrete values of a mixed loop that contradict each other whatever is tried; and what the equations did not
     /// determine with some of these values.
     Mixed(Vec<VarId>, Option<Unknown>),
 }
 
 /// What all blocks share.
-pub struct Setting<'a> {
+pub struct BlockContext<'a> {
     /// The model.
-    pub system: &'a System,
+    pub system: &'a ExecutableSystem,
     /// Sizes and bounds.
-    pub scales: &'a Scales,
+    pub scales: &'a VariableScales,
     /// Corrections of modes.
-    pub modes: &'a Modes,
+    pub modes: &'a CrossingModes,
 }
 
 /// Work space for a list of blocks, allocated once.
 #[derive(Debug, Default)]
-pub struct Blocks {
-    work: Vec<Work>,
+pub struct BlockWorkspace {
+    work: Vec<BlockWork>,
 }
 
 #[derive(Debug)]
-enum Work {
-    Assign(Corrections),
+enum BlockWork {
+    Assign(ModeCorrections),
     Loop(Box<Newton>),
     Mixed(Box<MixedWork>),
 }
 
 /// Slot and crossing of each mode that an assignment program computes.
-type Corrections = Vec<(usize, u32)>;
+type ModeCorrections = Vec<(usize, u32)>;
 
 #[derive(Debug)]
 struct MixedWork {
-    continuous: Vec<Work>,
-    corrections: Vec<Corrections>,
+    continuous: Vec<BlockWork>,
+    corrections: Vec<ModeCorrections>,
     /// Slots of all discrete targets, in order.
     slots: Vec<usize>,
     targets: Vec<VarId>,
@@ -66,16 +66,16 @@ struct MixedWork {
     keeps: bool,
 }
 
-impl Blocks {
+impl BlockWorkspace {
     /// Work space for these blocks.
-    pub fn new(code: &[BlockCode], scales: &Scales, modes: &Modes) -> Self {
-        Blocks { work: code.iter().map(|b| Work::new(b, scales, modes)).collect() }
+    pub fn new(code: &[BlockCode], scales: &VariableScales, modes: &CrossingModes) -> Self {
+        BlockWorkspace { work: code.iter().map(|b| BlockWork::new(b, scales, modes)).collect() }
     }
 
     /// What the equations left open in the last solution, and what switched there.
     pub fn kept(&self) -> Option<(&[VarId], Unknown)> {
         self.work.iter().find_map(|work| match work {
-            Work::Mixed(mixed) if mixed.keeps => Some((mixed.targets.as_slice(), mixed.undetermined?)),
+            BlockWork::Mixed(mixed) if mixed.keeps => Some((mixed.targets.as_slice(), mixed.undetermined?)),
             _ => None,
         })
     }
@@ -87,14 +87,19 @@ impl Blocks {
 
     /// Whether a loop was solved by a search in the last run ([`Newton::searched`]).
     pub fn searched(&self) -> bool {
-        self.work.iter().any(Work::searched)
+        self.work.iter().any(BlockWork::searched)
     }
 
     /// Solves all blocks in order.
     ///
     /// # Errors
     /// The first block that fails.
-    pub fn run(&mut self, code: &[BlockCode], setting: &Setting<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
+    pub fn run(
+        &mut self,
+        code: &[BlockCode],
+        setting: &BlockContext<'_>,
+        values: &mut [f64],
+    ) -> Result<(), BlockFailure> {
         code.iter().zip(&mut self.work).try_for_each(|(code, work)| work.run(code, setting, values))
     }
 
@@ -104,9 +109,9 @@ impl Blocks {
     /// The first block that fails.
     pub fn run_stale(
         &mut self,
-        stale: &mut Stale,
+        stale: &mut StaleBlocks,
         code: &[BlockCode],
-        setting: &Setting<'_>,
+        setting: &BlockContext<'_>,
         values: &mut [f64],
     ) -> Result<(), BlockFailure> {
         for (number, (code, work)) in code.iter().zip(&mut self.work).enumerate() {
@@ -119,39 +124,39 @@ impl Blocks {
     }
 }
 
-impl Work {
-    fn new(code: &BlockCode, scales: &Scales, modes: &Modes) -> Self {
+impl BlockWork {
+    fn new(code: &BlockCode, scales: &VariableScales, modes: &CrossingModes) -> Self {
         match code {
-            BlockCode::Assign(assign) => Work::Assign(corrections(assign, modes)),
-            BlockCode::Loop(code) => Work::Loop(Box::new(Newton::new(code, scales))),
-            BlockCode::Mixed(mixed) => Work::Mixed(Box::new(MixedWork::new(mixed, scales, modes))),
+            BlockCode::Assign(assign) => BlockWork::Assign(corrections(assign, modes)),
+            BlockCode::Loop(code) => BlockWork::Loop(Box::new(Newton::new(code, scales))),
+            BlockCode::Mixed(mixed) => BlockWork::Mixed(Box::new(MixedWork::new(mixed, scales, modes))),
         }
     }
 
     fn may_jump(&mut self, allowed: bool) {
         match self {
-            Work::Assign(_) => {}
-            Work::Loop(newton) => newton.may_jump(allowed),
-            Work::Mixed(mixed) => mixed.continuous.iter_mut().for_each(|work| work.may_jump(allowed)),
+            BlockWork::Assign(_) => {}
+            BlockWork::Loop(newton) => newton.may_jump(allowed),
+            BlockWork::Mixed(mixed) => mixed.continuous.iter_mut().for_each(|work| work.may_jump(allowed)),
         }
     }
 
     fn searched(&self) -> bool {
         match self {
-            Work::Assign(_) => false,
-            Work::Loop(newton) => newton.searched(),
-            Work::Mixed(mixed) => mixed.continuous.iter().any(Work::searched),
+            BlockWork::Assign(_) => false,
+            BlockWork::Loop(newton) => newton.searched(),
+            BlockWork::Mixed(mixed) => mixed.continuous.iter().any(BlockWork::searched),
         }
     }
 
-    fn run(&mut self, code: &BlockCode, setting: &Setting<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
+    fn run(&mut self, code: &BlockCode, setting: &BlockContext<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
         match (self, code) {
-            (Work::Assign(corrections), BlockCode::Assign(assign)) => {
+            (BlockWork::Assign(corrections), BlockCode::Assign(assign)) => {
                 run_assign(assign, corrections, setting, values);
                 check_finite(&assign.targets, values)
             }
-            (Work::Loop(newton), BlockCode::Loop(code)) => run_loop(newton, code, setting, values),
-            (Work::Mixed(work), BlockCode::Mixed(mixed)) => work.run(mixed, setting, values),
+            (BlockWork::Loop(newton), BlockCode::Loop(code)) => run_loop(newton, code, setting, values),
+            (BlockWork::Mixed(work), BlockCode::Mixed(mixed)) => work.run(mixed, setting, values),
             _ => unreachable!("work space is made from the same blocks"),
         }
     }
@@ -160,21 +165,21 @@ impl Work {
 fn run_loop(
     newton: &mut Newton,
     code: &LoopCode,
-    setting: &Setting<'_>,
+    setting: &BlockContext<'_>,
     values: &mut [f64],
 ) -> Result<(), BlockFailure> {
     newton.solve(code, setting.scales, values).map_err(|f| BlockFailure::Loop(Box::new(f)))?;
     check_finite(&code.inner, values)
 }
 
-fn check_finite(targets: &[Target], values: &[f64]) -> Result<(), BlockFailure> {
+fn check_finite(targets: &[AssignTarget], values: &[f64]) -> Result<(), BlockFailure> {
     match targets.iter().find(|t| !values[t.slot].is_finite()) {
         None => Ok(()),
         Some(target) => Err(BlockFailure::NonFinite(*target)),
     }
 }
 
-fn corrections(code: &AssignCode, modes: &Modes) -> Corrections {
+fn corrections(code: &AssignCode, modes: &CrossingModes) -> ModeCorrections {
     code.targets
         .iter()
         .filter_map(|t| match t.unknown {
@@ -184,7 +189,7 @@ fn corrections(code: &AssignCode, modes: &Modes) -> Corrections {
         .collect()
 }
 
-fn run_assign(code: &AssignCode, corrections: &Corrections, setting: &Setting<'_>, values: &mut [f64]) {
+fn run_assign(code: &AssignCode, corrections: &ModeCorrections, setting: &BlockContext<'_>, values: &mut [f64]) {
     code.program.run(values);
     for &(slot, crossing) in corrections {
         values[slot] = setting.modes.correct(setting.system, crossing, values[slot], values);
@@ -192,14 +197,14 @@ fn run_assign(code: &AssignCode, corrections: &Corrections, setting: &Setting<'_
 }
 
 impl MixedWork {
-    fn new(code: &MixedCode, scales: &Scales, modes: &Modes) -> Self {
-        let targets: Vec<&Target> = code.discrete.iter().flat_map(|a| &a.targets).collect();
-        let variable = |t: &&Target| match t.unknown {
+    fn new(code: &MixedCode, scales: &VariableScales, modes: &CrossingModes) -> Self {
+        let targets: Vec<&AssignTarget> = code.discrete.iter().flat_map(|a| &a.targets).collect();
+        let variable = |t: &&AssignTarget| match t.unknown {
             Unknown::Var(v) | Unknown::Der(v) => v,
         };
         let ids: Vec<VarId> = targets.iter().map(variable).collect();
         MixedWork {
-            continuous: code.continuous.iter().map(|b| Work::new(b, scales, modes)).collect(),
+            continuous: code.continuous.iter().map(|b| BlockWork::new(b, scales, modes)).collect(),
             corrections: code.discrete.iter().map(|a| corrections(a, modes)).collect(),
             slots: targets.iter().map(|t| t.slot).collect(),
             modes: (0..ids.len()).filter(|&i| modes.crossing(ids[i]).is_some()).collect(),
@@ -211,7 +216,7 @@ impl MixedWork {
 
     fn may_keep(&mut self, allowed: bool) {
         for work in &mut self.continuous {
-            if let Work::Loop(newton) = work {
+            if let BlockWork::Loop(newton) = work {
                 newton.may_keep(allowed);
             }
         }
@@ -219,7 +224,7 @@ impl MixedWork {
 
     /// Where no modes determine everything, what they leave open keeps its value, as long as the equations that are left
     /// over hold: two dry frictions hold one shaft, and each goes on with the load that it has.
-    fn run(&mut self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
+    fn run(&mut self, code: &MixedCode, setting: &BlockContext<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
         let start = self.read(values);
         self.undetermined = None;
         self.keeps = false;
@@ -230,7 +235,8 @@ impl MixedWork {
         self.write(&start, values);
         self.may_keep(true);
         let kept = self.determine(code, setting, values, &start);
-        self.keeps = kept.is_ok() && self.continuous.iter().any(|w| matches!(w, Work::Loop(newton) if newton.keeps()));
+        self.keeps =
+            kept.is_ok() && self.continuous.iter().any(|w| matches!(w, BlockWork::Loop(newton) if newton.keeps()));
         self.may_keep(false);
         kept.or(end)
     }
@@ -240,7 +246,7 @@ impl MixedWork {
     fn determine(
         &mut self,
         code: &MixedCode,
-        setting: &Setting<'_>,
+        setting: &BlockContext<'_>,
         values: &mut [f64],
         start: &[f64],
     ) -> Result<(), BlockFailure> {
@@ -249,7 +255,7 @@ impl MixedWork {
                 self.write(start, values);
                 let mut modes = setting.modes.clone();
                 modes.release();
-                self.search(code, &Setting { modes: &modes, ..*setting }, values, start)
+                self.search(code, &BlockContext { modes: &modes, ..*setting }, values, start)
             }
             end => end,
         }
@@ -260,7 +266,7 @@ impl MixedWork {
     fn search(
         &mut self,
         code: &MixedCode,
-        setting: &Setting<'_>,
+        setting: &BlockContext<'_>,
         values: &mut [f64],
         start: &[f64],
     ) -> Result<(), BlockFailure> {
@@ -289,19 +295,19 @@ impl MixedWork {
     fn solve_continuous(
         &mut self,
         code: &MixedCode,
-        setting: &Setting<'_>,
+        setting: &BlockContext<'_>,
         values: &mut [f64],
     ) -> Result<(), BlockFailure> {
         let solved = code.continuous.iter().zip(&mut self.continuous).try_for_each(|(c, w)| w.run(c, setting, values));
         if let Err(BlockFailure::Loop(failure)) = &solved
-            && let Reason::Singular(unknown) = failure.reason
+            && let NewtonFailureReason::Singular(unknown) = failure.reason
         {
             self.undetermined = Some(unknown);
         }
         solved
     }
 
-    fn run_discrete(&self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64]) {
+    fn run_discrete(&self, code: &MixedCode, setting: &BlockContext<'_>, values: &mut [f64]) {
         for (assign, corrections) in code.discrete.iter().zip(&self.corrections) {
             run_assign(assign, corrections, setting, values);
         }
@@ -311,7 +317,7 @@ impl MixedWork {
     fn iterate(
         &mut self,
         code: &MixedCode,
-        setting: &Setting<'_>,
+        setting: &BlockContext<'_>,
         values: &mut [f64],
         single: bool,
     ) -> Result<bool, BlockFailure> {
@@ -340,7 +346,7 @@ impl MixedWork {
     fn combine(
         &mut self,
         code: &MixedCode,
-        setting: &Setting<'_>,
+        setting: &BlockContext<'_>,
         values: &mut [f64],
         start: &[f64],
     ) -> Result<(), BlockFailure> {
@@ -356,7 +362,7 @@ impl MixedWork {
             let mut modes = setting.modes.clone();
             for wanted in wanted() {
                 relations.iter().for_each(|&i| self.hold(&mut modes, i, wanted[i]));
-                if self.fits(code, &Setting { modes: &modes, ..*setting }, values, &wanted) {
+                if self.fits(code, &BlockContext { modes: &modes, ..*setting }, values, &wanted) {
                     return Ok(());
                 }
             }
@@ -368,14 +374,14 @@ impl MixedWork {
 
     /// Lets a mode keep a value as long as what it compares differs by less than the error of the solution: where a current
     /// and a voltage vanish together, rounding decides on which side of 0 they lie, and may leave no side to any mode.
-    fn hold(&self, modes: &mut Modes, target: usize, value: f64) {
+    fn hold(&self, modes: &mut CrossingModes, target: usize, value: f64) {
         if let Some(crossing) = modes.crossing(self.targets[target]) {
             modes.hold(crossing, value);
         }
     }
 
     /// Whether these modes reproduce themselves.
-    fn fits(&mut self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64], wanted: &[f64]) -> bool {
+    fn fits(&mut self, code: &MixedCode, setting: &BlockContext<'_>, values: &mut [f64], wanted: &[f64]) -> bool {
         self.write(wanted, values);
         self.settle_others(code, setting, values, wanted);
         let before = self.read(values);
@@ -387,7 +393,7 @@ impl MixedWork {
     }
 
     /// Computes what depends on the modes, with the modes held.
-    fn settle_others(&self, code: &MixedCode, setting: &Setting<'_>, values: &mut [f64], wanted: &[f64]) {
+    fn settle_others(&self, code: &MixedCode, setting: &BlockContext<'_>, values: &mut [f64], wanted: &[f64]) {
         for _ in 0..3 {
             let mut at = 0;
             for (assign, corrections) in code.discrete.iter().zip(&self.corrections) {

@@ -3,7 +3,7 @@
 //! The integrator's past cannot be written down exactly. So a run that makes checkpoints begins afresh at each of them,
 //! from what the checkpoint holds and nothing else; a run that is taken up there does the same, to the last bit.
 
-use super::past::Past;
+use super::past::DelayHistory;
 use super::settings::Statistics;
 use super::state::State;
 use bramah_expr::VarId;
@@ -61,7 +61,7 @@ impl Checkpoint {
     /// # Errors
     /// Which line cannot be read, counted from 1.
     pub fn from_text(text: &str) -> Result<Self, usize> {
-        let mut lines = Lines { lines: text.lines(), at: 0 };
+        let mut lines = CheckpointLines { lines: text.lines(), at: 0 };
         let time = lines.field("time")?;
         let time = lines.need(time.split(' ').next().and_then(from_bits))?;
         let number = lines.whole("number")?;
@@ -77,13 +77,13 @@ impl Checkpoint {
         let work = lines.need(work.and_then(|w| <[u64; 8]>::try_from(w).ok()))?;
         let count = lines.whole("values")?;
         let (names, values, derivatives) = (Vec::new(), Vec::new(), Vec::new());
-        let mut state = State { time, names, values, derivatives, past: Past::default() };
+        let mut state = State { time, names, values, derivatives, past: DelayHistory::default() };
         for _ in 0..count {
             lines.value(&mut state)?;
         }
         let past = lines.field("past")?;
         let past: Option<Vec<f64>> = past.split_whitespace().map(from_bits).collect();
-        state.past = lines.need(past.and_then(|numbers| Past::from_numbers(&numbers)))?;
+        state.past = lines.need(past.and_then(|numbers| DelayHistory::from_numbers(&numbers)))?;
         lines.field("end")?;
         Ok(Checkpoint { state, number, statistics: statistics(work), rows, choice, settled })
     }
@@ -119,12 +119,12 @@ fn statistics(counts: [u64; 8]) -> Statistics {
 }
 
 /// Lines on their way, counted.
-struct Lines<'a> {
+struct CheckpointLines<'a> {
     lines: std::str::Lines<'a>,
     at: usize,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> CheckpointLines<'a> {
     fn next(&mut self) -> Result<&'a str, usize> {
         self.at += 1;
         self.lines.next().ok_or(self.at)
@@ -169,7 +169,7 @@ mod tests {
                 names: vec!["x".into(), "'a b'".into()],
                 values: vec![1.0 / 3.0, -0.0],
                 derivatives: vec![f64::MIN_POSITIVE, f64::INFINITY],
-                past: Past::default(),
+                past: DelayHistory::default(),
             },
             number: 3,
             statistics: statistics([1, 2, 3, 4, 5, 6, 7, 8]),

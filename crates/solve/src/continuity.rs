@@ -2,8 +2,8 @@
 //! events says nothing of a jump, so that the impulse it takes (a force on a mass, a flow into a volume, a voltage at an
 //! inductor) would be missing in all balances.
 
-use super::newton::Scales;
-use crate::lower::System;
+use super::newton::VariableScales;
+use crate::lower::ExecutableSystem;
 use bramah_expr::VarId;
 
 /// A jump counts from this many tolerances on: what the corrector leaves in algebraic unknowns is below.
@@ -11,7 +11,7 @@ const JUMP: f64 = 100.0;
 
 /// A variable that has jumped.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Jump {
+pub struct VariableJump {
     /// The variable.
     pub variable: VarId,
     /// Its value before the event.
@@ -22,16 +22,16 @@ pub struct Jump {
 
 /// The watch over one run.
 #[derive(Debug)]
-pub struct Continuity {
+pub struct ContinuityMonitor {
     /// Variable, slot and size of a jump that counts beside the part of the value.
     watched: Vec<(VarId, usize, f64)>,
     relative: f64,
     before: Vec<f64>,
 }
 
-impl Continuity {
+impl ContinuityMonitor {
     /// For the variables of a system.
-    pub fn new(system: &System, scales: &Scales, tolerance: f64) -> Self {
+    pub fn new(system: &ExecutableSystem, scales: &VariableScales, tolerance: f64) -> Self {
         let relative = JUMP * tolerance;
         let watched: Vec<_> = system
             .dae
@@ -39,7 +39,7 @@ impl Continuity {
             .iter()
             .map(|&v| (v, system.layout.var(v), relative * scales.nominal[v.index()]))
             .collect();
-        Continuity { before: vec![0.0; watched.len()], watched, relative }
+        ContinuityMonitor { before: vec![0.0; watched.len()], watched, relative }
     }
 
     /// Remembers the values just before an event.
@@ -50,11 +50,11 @@ impl Continuity {
     }
 
     /// The largest jump since then, in tolerances.
-    pub fn jump(&self, values: &[f64]) -> Option<Jump> {
+    pub fn jump(&self, values: &[f64]) -> Option<VariableJump> {
         let jumps = self.watched.iter().zip(&self.before).filter_map(|(&(variable, slot, absolute), &before)| {
             let after = values[slot];
             let size = (after - before).abs() / (absolute + self.relative * before.abs().max(after.abs()));
-            (size > 1.0).then_some((size, Jump { variable, before, after }))
+            (size > 1.0).then_some((size, VariableJump { variable, before, after }))
         });
         jumps.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, jump)| jump)
     }

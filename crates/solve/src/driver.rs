@@ -8,29 +8,29 @@ mod outside;
 mod remember;
 mod tangents;
 
-use super::algebraic::{self, Algebraic};
-use super::continuity::Continuity;
-use super::events::{Events, Outcome};
-use super::foresight::Foresight;
-use super::ida::{Failure, Ida, Tolerances};
+use super::algebraic::{self, AlgebraicSolver};
+use super::continuity::ContinuityMonitor;
+use super::events::{EventHandler, EventOutcome};
+use super::foresight::CrossingForecast;
+use super::ida::{Ida, IdaFailure, IntegratorTolerances};
 use super::linear::Lu;
-use super::model::Model;
-use super::modes::{Modes, RootFunctions, follows_time};
-use super::monitor::{Accumulation, Chatter, Reported};
-use super::newton::Scales;
-use super::output::Grid;
-use super::past::{Delays, Past};
-use super::restart::Restart;
-use super::schedule::Clocks;
+use super::model::IntegrationModel;
+use super::modes::{CrossingModes, RootFunctions, follows_time};
+use super::monitor::{AssertionReports, ChatterMonitor, ImpactAccumulation};
+use super::newton::VariableScales;
+use super::output::OutputGrid;
+use super::past::{DelayBuffers, DelayHistory};
+use super::restart::IntegratorRestart;
+use super::schedule::SampleClocks;
 use super::settings::{End, Settings, Statistics};
 use super::state::State;
-use super::{Control, Input, Run, Sink, initialize, report};
-use crate::lower::{Layout, Pattern, Program, System};
+use super::{Control, RecordedInput, RowSink, RunResult, initialize, report};
+use crate::lower::{ExecutableSystem, Program, SparsityPattern, ValueLayout};
 use bramah_model::structure::{CrossingKind, StateChoice};
 use bramah_syntax::diag::{Code, Diagnostic};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-use tangents::Carried;
+use tangents::TangentPropagator;
 
 /// The clock, for the statistics' seconds alone: nothing else depends on it.
 #[allow(clippy::disallowed_methods, reason = "solve_s and initialize_s are measured where they pass")]
@@ -55,20 +55,20 @@ fn algebraic_corrector(tolerance: f64) -> f64 {
 const NOTHING: f64 = 1e-30;
 
 /// Why a run ends before its stop time.
-pub struct Stop {
+pub struct EarlyStop {
     /// How.
     pub end: End,
     /// What to say.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-impl Stop {
+impl EarlyStop {
     fn new(end: End, diagnostic: Diagnostic) -> Self {
-        Stop { end, diagnostics: vec![diagnostic] }
+        EarlyStop { end, diagnostics: vec![diagnostic] }
     }
 
     /// With what functions outside the equations have said.
-    fn with_troubles(mut self, system: &System) -> Self {
+    fn with_troubles(mut self, system: &ExecutableSystem) -> Self {
         let mut troubles = report::troubles(system);
         if let Some(first) = self.diagnostics.first_mut() {
             troubles.retain(|trouble| !first.message.starts_with(trouble));
@@ -78,35 +78,35 @@ impl Stop {
     }
 }
 
-type Flow = Result<(), Stop>;
+type StopResult = Result<(), EarlyStop>;
 
 /// Where a run starts when not at its initial values.
-pub enum From<'a> {
+pub enum RunOrigin<'a> {
     /// At a saved state.
     State(&'a State),
     /// Where the same run stopped for other states; its rows go on as if nothing had happened.
-    Switch(&'a State, Grid),
+    Switch(&'a State, OutputGrid),
 }
 
 /// Why a run stands before its end, and how it goes on.
-pub struct Switch {
+pub struct StateSwitch {
     /// The states to go on with; `None` at a checkpoint.
     pub choice: Option<StateChoice>,
     /// The rows that are out.
-    pub grid: Grid,
+    pub grid: OutputGrid,
 }
 
 /// A run, or the part of it up to a checkpoint or a change of states.
-pub struct Leg {
+pub struct RunSegment {
     /// What it came to.
-    pub run: Run,
+    pub run: RunResult,
     /// Set when the run is to go on.
-    pub switch: Option<Switch>,
+    pub switch: Option<StateSwitch>,
 }
 
 /// What caused an event.
 #[derive(Clone, Copy, PartialEq)]
-enum Cause {
+enum EventCause {
     /// The start of the run.
     Start,
     /// A known time.
@@ -119,20 +119,20 @@ enum Cause {
 
 /// A run under way.
 pub struct Driver<'a, 'c> {
-    system: &'a System,
+    system: &'a ExecutableSystem,
     settings: &'a Settings,
     /// None when the caller steps from outside.
     control: Option<&'a mut Control<'c>>,
-    sink: Option<&'a mut dyn Sink>,
+    sink: Option<&'a mut dyn RowSink>,
     /// Where the integrator must not pass.
     until: f64,
     /// Present from the start on; before that the model stands alone.
-    ida: Option<Ida<Model<'a>>>,
-    scales: Scales,
-    modes: Modes,
-    events: Events,
-    clocks: Clocks,
-    grid: Grid,
+    ida: Option<Ida<IntegrationModel<'a>>>,
+    scales: VariableScales,
+    modes: CrossingModes,
+    events: EventHandler,
+    clocks: SampleClocks,
+    grid: OutputGrid,
     /// The first row is out already.
     silent: bool,
     /// Pauses in a row between which time hardly moved.
@@ -150,23 +150,23 @@ pub struct Driver<'a, 'c> {
     program: Program,
     slots: Vec<usize>,
     row: Vec<f64>,
-    restart: Restart,
-    continuity: Continuity,
+    restart: IntegratorRestart,
+    continuity: ContinuityMonitor,
     /// Sensitivities, where they are asked for.
-    carried: Option<Box<Carried>>,
+    carried: Option<Box<TangentPropagator>>,
     /// Length of the last step before an event.
     last_step: f64,
-    algebraic: Algebraic,
-    chatter: Chatter,
-    accumulation: Accumulation,
-    reported: Reported,
+    algebraic: AlgebraicSolver,
+    chatter: ChatterMonitor,
+    accumulation: ImpactAccumulation,
+    reported: AssertionReports,
     /// Inputs that change at the next event, as slots and values.
     pending: Vec<(usize, f64)>,
     t: f64,
     /// The next time at which a relation of time changes.
     next_crossing: f64,
     /// Other relations of time.
-    foresight: Foresight<'a>,
+    foresight: CrossingForecast<'a>,
     roots: Vec<i32>,
     statistics: Statistics,
     diagnostics: Vec<Diagnostic>,
@@ -174,14 +174,14 @@ pub struct Driver<'a, 'c> {
 
 /// Runs a system from its initial values, or from a saved state, until a time at most.
 pub fn run<'a>(
-    system: &'a System,
+    system: &'a ExecutableSystem,
     settings: &'a Settings,
-    inputs: &[Input],
-    from: Option<From<'_>>,
+    inputs: &[RecordedInput],
+    from: Option<RunOrigin<'_>>,
     until: f64,
-    sink: &'a mut dyn Sink,
+    sink: &'a mut dyn RowSink,
     control: &'a mut Control<'_>,
-) -> Leg {
+) -> RunSegment {
     let clock = now();
     let resumed = from.is_some();
     let (mut driver, model, solved) = prepare(system, settings, inputs, from, Some(sink), Some(control));
@@ -194,13 +194,13 @@ pub fn run<'a>(
 /// # Errors
 /// As a run that ends there.
 pub fn start<'a>(
-    system: &'a System,
+    system: &'a ExecutableSystem,
     settings: &'a Settings,
-    inputs: &[Input],
+    inputs: &[RecordedInput],
     from: Option<&State>,
-) -> Result<Driver<'a, 'a>, Stop> {
+) -> Result<Driver<'a, 'a>, EarlyStop> {
     let resumed = from.is_some();
-    let (mut driver, mut model, solved) = prepare(system, settings, inputs, from.map(From::State), None, None);
+    let (mut driver, mut model, solved) = prepare(system, settings, inputs, from.map(RunOrigin::State), None, None);
     solved.map_err(|d| stop_at_start(d).with_troubles(system))?;
     // the caller says how far each step goes: a state from behind the stop time is a start like others
     driver.until = driver.until.max(driver.t + (settings.stop_time - settings.start_time).abs());
@@ -209,38 +209,38 @@ pub fn start<'a>(
     Ok(driver)
 }
 
-fn stop_at_start(diagnostic: Diagnostic) -> Stop {
+fn stop_at_start(diagnostic: Diagnostic) -> EarlyStop {
     let end = match diagnostic.code {
         Code::NonFinite => End::NonFinite,
         Code::AssertionFailed => End::Assertion,
         _ => End::StepTooSmall,
     };
-    Stop::new(end, diagnostic)
+    EarlyStop::new(end, diagnostic)
 }
 
 /// A driver, its model, and whether the model's values at the start were found.
 fn prepare<'a, 'c>(
-    system: &'a System,
+    system: &'a ExecutableSystem,
     settings: &'a Settings,
-    inputs: &[Input],
-    from: Option<From<'_>>,
-    sink: Option<&'a mut dyn Sink>,
+    inputs: &[RecordedInput],
+    from: Option<RunOrigin<'_>>,
+    sink: Option<&'a mut dyn RowSink>,
     control: Option<&'a mut Control<'c>>,
-) -> (Driver<'a, 'c>, Model<'a>, Result<(), Diagnostic>) {
+) -> (Driver<'a, 'c>, IntegrationModel<'a>, Result<(), Diagnostic>) {
     let mut values = initialize::prepare(system, settings);
     let (from, grid) = match from {
         None => (None, None),
-        Some(From::State(state)) => (Some(state), None),
-        Some(From::Switch(state, grid)) => (Some(state), Some(grid)),
+        Some(RunOrigin::State(state)) => (Some(state), None),
+        Some(RunOrigin::Switch(state, grid)) => (Some(state), Some(grid)),
     };
     let start = from.map_or(settings.start_time, |s| s.time);
-    values[Layout::TIME] = start;
-    let mut playback = super::inputs::Playback::new(inputs, &system.layout);
+    values[ValueLayout::TIME] = start;
+    let mut playback = super::inputs::InputPlayback::new(inputs, &system.layout);
     playback.seek(start, &mut values);
-    let scales = Scales::new(system, &values);
-    let mut modes = Modes::new(system, settings.tolerance);
-    let past = from.map_or_else(Past::default, |s| s.past.clone());
-    let delays = Delays::new(system, &values, past);
+    let scales = VariableScales::new(system, &values);
+    let mut modes = CrossingModes::new(system, settings.tolerance);
+    let past = from.map_or_else(DelayHistory::default, |s| s.past.clone());
+    let delays = DelayBuffers::new(system, &values, past);
     let solved = match from {
         Some(state) => {
             state.restore(system, &mut values);
@@ -270,27 +270,28 @@ fn prepare<'a, 'c>(
     if from.is_some() {
         playback.seek(start, &mut values);
     }
-    let mut restart = Restart::new(system, &scales, settings.tolerance);
+    let mut restart = IntegratorRestart::new(system, &scales, settings.tolerance);
     if from.is_some() {
         restart.resume(system, &mut values);
     }
     let asked = settings.tangents.as_ref().filter(|_| !system.columns.is_empty());
-    let carried = asked.map(|asked| Box::new(Carried::new(system, asked, &settings.wanted, restart.nominal())));
+    let carried =
+        asked.map(|asked| Box::new(TangentPropagator::new(system, asked, &settings.wanted, restart.nominal())));
     let directions = settings.tangents.as_ref().map_or(0, |asked| asked.starts.len());
     let roots = RootFunctions::new(system);
     let driver = Driver {
         carried,
         last_step: 0.0,
-        algebraic: Algebraic::new(system, restart.nominal(), settings.tolerance),
+        algebraic: AlgebraicSolver::new(system, restart.nominal(), settings.tolerance),
         restart,
-        continuity: Continuity::new(system, &scales, settings.tolerance),
-        events: Events::new(system, &scales, &modes),
+        continuity: ContinuityMonitor::new(system, &scales, settings.tolerance),
+        events: EventHandler::new(system, &scales, &modes),
         program: system.observe_only(&settings.wanted),
         slots: settings.wanted.iter().map(|&v| system.layout.var(v)).collect(),
         row: vec![0.0; settings.wanted.len() * (1 + directions)],
         silent: grid.is_some(),
         grid: grid.unwrap_or_else(|| {
-            Grid::new(start, settings.stop_time, settings.interval).with_event_rows(settings.most_event_rows)
+            OutputGrid::new(start, settings.stop_time, settings.interval).with_event_rows(settings.most_event_rows)
         }),
         choice: None,
         creep: 0,
@@ -298,18 +299,18 @@ fn prepare<'a, 'c>(
         renewals: 0,
         jumped: (f64::NEG_INFINITY, 0.0),
         tests_states_only: false,
-        accumulation: Accumulation::default(),
-        chatter: Chatter::new(settings.stop_time - settings.start_time, settings.events_at_once),
-        reported: Reported::new(system),
+        accumulation: ImpactAccumulation::default(),
+        chatter: ChatterMonitor::new(settings.stop_time - settings.start_time, settings.events_at_once),
+        reported: AssertionReports::new(system),
         pending: Vec::new(),
         t: start,
         until: settings.stop_time,
         next_crossing: f64::INFINITY,
-        foresight: Foresight::new(system, &roots, settings.stop_time - settings.start_time),
+        foresight: CrossingForecast::new(system, &roots, settings.stop_time - settings.start_time),
         roots: Vec::new(),
         statistics: Statistics::default(),
         diagnostics: missed,
-        clocks: Clocks::default(),
+        clocks: SampleClocks::default(),
         ida: None,
         system,
         settings,
@@ -318,12 +319,18 @@ fn prepare<'a, 'c>(
         scales,
         modes,
     };
-    let model = Model { system, values, roots, playback, trap: None, slopes: None };
+    let model = IntegrationModel { system, values, roots, playback, trap: None, slopes: None };
     (driver, model, solved)
 }
 
 impl<'a> Driver<'a, '_> {
-    fn complete(mut self, mut model: Model<'a>, solved: Result<(), Diagnostic>, resumed: bool, clock: Instant) -> Leg {
+    fn complete(
+        mut self,
+        mut model: IntegrationModel<'a>,
+        solved: Result<(), Diagnostic>,
+        resumed: bool,
+        clock: Instant,
+    ) -> RunSegment {
         let end = match solved {
             Err(diagnostic) => Err(stop_at_start(diagnostic)),
             Ok(()) => self.begin(&mut model, resumed),
@@ -340,7 +347,8 @@ impl<'a> Driver<'a, '_> {
             }
         };
         self.statistics.solve_s = clock.elapsed().saturating_sub(self.writing() - before).as_secs_f64();
-        let past = self.ida.as_ref().map_or_else(Past::default, |ida| ida.watch().playback.delays.past().clone());
+        let past =
+            self.ida.as_ref().map_or_else(DelayHistory::default, |ida| ida.watch().playback.delays.past().clone());
         self.finish(end, &values, past)
     }
 
@@ -348,7 +356,7 @@ impl<'a> Driver<'a, '_> {
         self.sink.as_ref().map_or(Duration::ZERO, |sink| sink.writing())
     }
 
-    fn finish(mut self, end: Flow, values: &[f64], past: Past) -> Leg {
+    fn finish(mut self, end: StopResult, values: &[f64], past: DelayHistory) -> RunSegment {
         let stands = end.is_ok() && (self.choice.is_some() || self.pauses());
         let end = match end {
             Ok(()) => End::Reached,
@@ -360,14 +368,14 @@ impl<'a> Driver<'a, '_> {
         };
         self.count_work();
         self.note_thinned();
-        let run = Run {
+        let run = RunResult {
             end,
             time: self.t,
             diagnostics: self.diagnostics,
             statistics: self.statistics,
             state: State::save(self.system, self.t, values, past),
         };
-        Leg { run, switch: stands.then_some(Switch { choice: self.choice, grid: self.grid }) }
+        RunSegment { run, switch: stands.then_some(StateSwitch { choice: self.choice, grid: self.grid }) }
     }
 
     /// Whether the run goes on behind where this leg ends.
@@ -391,21 +399,21 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// The event iteration at the start, and the first row.
-    fn begin(&mut self, model: &mut Model<'a>, resumed: bool) -> Flow {
+    fn begin(&mut self, model: &mut IntegrationModel<'a>, resumed: bool) -> StopResult {
         let system = self.system;
-        let mut outcome = Outcome::default();
+        let mut outcome = EventOutcome::default();
         if !resumed {
             // what fires at `initial()`, with the values that initialization has found
-            model.values[Layout::INITIAL] = 1.0;
+            model.values[ValueLayout::INITIAL] = 1.0;
             self.events.act(system, &mut model.values, &mut outcome);
-            model.values[Layout::INITIAL] = 0.0;
+            model.values[ValueLayout::INITIAL] = 0.0;
         }
         self.events.settle_pre(&mut model.values);
-        self.clocks = Clocks::new(system, &model.values, self.t).map_err(|i| {
+        self.clocks = SampleClocks::new(system, &model.values, self.t).map_err(|i| {
             let sample = &system.dae.samples[i];
             let text = "the interval of `sample` is not positive";
             let reported = report::at_origin(&system.dae, Code::EventFailed, text, sample.origin, "here");
-            Stop::new(
+            EarlyStop::new(
                 End::StepTooSmall,
                 reported.help("give the parameters of the interval positive values, in seconds"),
             )
@@ -415,10 +423,10 @@ impl<'a> Driver<'a, '_> {
         }
         let events = &self.events;
         self.clocks.ring(self.t, |i| events.raise(i, &mut model.values));
-        let mut at_start = self.iterate(model, Cause::Start)?;
+        let mut at_start = self.iterate(model, EventCause::Start)?;
         // what happens at the start may change what the past begins with
         if !resumed && model.playback.delays.start(system, self.t, &mut model.values) {
-            at_start = self.iterate(model, Cause::Start)?;
+            at_start = self.iterate(model, EventCause::Start)?;
         }
         outcome.terminate = outcome.terminate.or(at_start.terminate);
         outcome.failed.extend(at_start.failed);
@@ -432,11 +440,11 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Writes the wanted values that stand in their slots.
-    fn write_row(&mut self, model: &mut Model<'a>) -> Flow {
+    fn write_row(&mut self, model: &mut IntegrationModel<'a>) -> StopResult {
         if let Some(relation) = self.accumulation.watched()
             && let Some(d) = self.accumulation.judge(self.system, self.t, self.distance(relation, &model.values))
         {
-            return Err(Stop::new(End::Chattering, d));
+            return Err(EarlyStop::new(End::Chattering, d));
         }
         if self.sink.is_none() {
             return Ok(());
@@ -462,14 +470,14 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Makes the integrator from the values of the start.
-    fn integrator(&mut self, mut model: Model<'a>) -> Flow {
+    fn integrator(&mut self, mut model: IntegrationModel<'a>) -> StopResult {
         let system = self.system;
         let still = system.columns.is_empty();
         // without unknowns IDA still finds the roots of functions of time: it integrates a constant
         let pattern =
-            if still { Pattern { n: 1, colptr: vec![0, 1], rowidx: vec![0] } } else { system.pattern.clone() };
+            if still { SparsityPattern { n: 1, colptr: vec![0, 1], rowidx: vec![0] } } else { system.pattern.clone() };
         let nominal = self.restart.nominal();
-        let tolerances = Tolerances {
+        let tolerances = IntegratorTolerances {
             relative: self.settings.tolerance,
             absolute: nominal.iter().map(|n| n * self.settings.tolerance).collect(),
             share: if still { vec![1.0] } else { self.shares() },
@@ -500,9 +508,9 @@ impl<'a> Driver<'a, '_> {
         });
         self.ida = Some(ida);
         if !self.hand_over_tangents(true) {
-            return Err(self.refused(&Failure::Code(0)));
+            return Err(self.refused(&IdaFailure::Code(0)));
         }
-        self.first_step(Cause::Start);
+        self.first_step(EventCause::Start);
         Ok(())
     }
 
@@ -518,7 +526,7 @@ impl<'a> Driver<'a, '_> {
         shares
     }
 
-    fn ida(&mut self) -> &mut Ida<Model<'a>> {
+    fn ida(&mut self) -> &mut Ida<IntegrationModel<'a>> {
         self.ida.as_mut().expect("made before the first step")
     }
 
@@ -532,7 +540,7 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Runs `act` with the model and the integrator's values at hand.
-    fn with_model<T>(&mut self, act: impl FnOnce(&mut Self, &mut Model<'a>, &[f64], &[f64]) -> T) -> T {
+    fn with_model<T>(&mut self, act: impl FnOnce(&mut Self, &mut IntegrationModel<'a>, &[f64], &[f64]) -> T) -> T {
         let mut ida = self.ida.take().expect("made before the first step");
         let (model, y, yp) = ida.parts();
         let result = act(self, model, y, yp);

@@ -1,21 +1,21 @@
 //! The event iteration: with `pre` values fixed everything is solved; then `pre` becomes the new values; until nothing
 //! changes.
 
-use super::blocks::{BlockFailure, Blocks, Setting};
-use super::modes::Modes;
-use super::newton::Scales;
+use super::blocks::{BlockContext, BlockFailure, BlockWorkspace};
+use super::modes::CrossingModes;
+use super::newton::VariableScales;
 use super::report::message_text;
-use super::stale::Stale;
-use crate::lower::System;
+use super::stale::StaleBlocks;
+use crate::lower::ExecutableSystem;
 use bramah_expr::VarId;
-use bramah_model::structure::{ActionKind, Unknown};
+use bramah_model::structure::{EventActionKind, Unknown};
 
 /// Passes before the iteration counts as endless.
 const PASSES: usize = 200;
 
 /// What an event did.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Outcome {
+pub struct EventOutcome {
     /// A discrete value changed.
     pub changed: bool,
     /// A state was set by `reinit`.
@@ -39,8 +39,8 @@ pub enum EventFailure {
 
 /// The machinery of events, allocated once.
 #[derive(Debug)]
-pub struct Events {
-    blocks: Blocks,
+pub struct EventHandler {
+    blocks: BlockWorkspace,
     /// Variable, its slot and the slot of its `pre` value, of every discrete variable.
     discrete: Vec<(VarId, usize, usize)>,
     /// Slot of the mode of each `sample`.
@@ -48,19 +48,19 @@ pub struct Events {
     /// Slots and values of the `reinit`s of one pass.
     reinits: Vec<(usize, f64)>,
     /// Made for the first event that takes a second pass.
-    stale: Option<Stale>,
+    stale: Option<StaleBlocks>,
 }
 
-impl Events {
+impl EventHandler {
     /// For the event blocks of a system.
-    pub fn new(system: &System, scales: &Scales, modes: &Modes) -> Self {
+    pub fn new(system: &ExecutableSystem, scales: &VariableScales, modes: &CrossingModes) -> Self {
         let samples = system.dae.samples.iter().map(|s| s.mode);
         let mut variables: Vec<VarId> = system.dae.discrete.iter().copied().chain(samples.clone()).collect();
         variables.sort_unstable();
         variables.dedup();
         let layout = &system.layout;
-        Events {
-            blocks: Blocks::new(&system.event, scales, modes),
+        EventHandler {
+            blocks: BlockWorkspace::new(&system.event, scales, modes),
             discrete: variables.into_iter().filter_map(|v| Some((v, layout.var(v), layout.pre(v)?))).collect(),
             samples: samples.map(|v| layout.var(v)).collect(),
             reinits: Vec::new(),
@@ -76,7 +76,7 @@ impl Events {
     }
 
     /// The same within an iteration: what reads them waits for the next pass.
-    fn move_pre(&self, stale: &mut Stale, values: &mut [f64]) {
+    fn move_pre(&self, stale: &mut StaleBlocks, values: &mut [f64]) {
         for &(_, now, before) in &self.discrete {
             if values[before] != values[now] {
                 values[before] = values[now];
@@ -85,7 +85,7 @@ impl Events {
         }
     }
 
-    /// What the last iteration left open, and what switched there ([`Blocks::kept`]).
+    /// What the last iteration left open, and what switched there ([`BlockWorkspace::kept`]).
     pub fn kept(&self) -> Option<(&[VarId], Unknown)> {
         self.blocks.kept()
     }
@@ -115,13 +115,13 @@ impl Events {
     /// [`EventFailure`]; `values` is where it failed.
     pub fn iterate(
         &mut self,
-        system: &System,
-        scales: &Scales,
-        modes: &Modes,
+        system: &ExecutableSystem,
+        scales: &VariableScales,
+        modes: &CrossingModes,
         values: &mut [f64],
-    ) -> Result<Outcome, EventFailure> {
-        let setting = Setting { system, scales, modes };
-        let mut outcome = Outcome::default();
+    ) -> Result<EventOutcome, EventFailure> {
+        let setting = BlockContext { system, scales, modes };
+        let mut outcome = EventOutcome::default();
         let mut moving = Vec::new();
         self.blocks.run(&system.event, &setting, values).map_err(EventFailure::Blocks)?;
         system.aliases(values);
@@ -130,7 +130,7 @@ impl Events {
             if !changed && !self.samples_up(values) {
                 return Ok(outcome);
             }
-            let mut stale = self.stale.take().unwrap_or_else(|| Stale::new(system));
+            let mut stale = self.stale.take().unwrap_or_else(|| StaleBlocks::new(system));
             if changed {
                 outcome.changed = true;
                 self.act(system, values, &mut outcome);
@@ -157,7 +157,7 @@ impl Events {
 
     /// `sample` holds only at its instant (MLS 3.7.5). Its end is a change of its own, for which `pre` of it is still
     /// true: `when pre(c) and not c` fires at the instant of the pulse.
-    fn lower_samples(&self, stale: &mut Stale, values: &mut [f64]) {
+    fn lower_samples(&self, stale: &mut StaleBlocks, values: &mut [f64]) {
         for &now in &self.samples {
             if values[now] != 0.0 {
                 values[now] = 0.0;
@@ -167,7 +167,7 @@ impl Events {
     }
 
     /// Does what fires in this pass. New values of states are computed before any of them is set.
-    pub fn act(&mut self, system: &System, values: &mut [f64], outcome: &mut Outcome) {
+    pub fn act(&mut self, system: &ExecutableSystem, values: &mut [f64], outcome: &mut EventOutcome) {
         if system.dae.actions.is_empty() {
             return;
         }
@@ -178,11 +178,11 @@ impl Events {
                 continue;
             }
             match (&action.kind, system.actions.value[i]) {
-                (ActionKind::Reinit(v, _), Some(slot)) => self.reinits.push((system.layout.var(*v), values[slot])),
-                (ActionKind::Terminate(message), _) => {
+                (EventActionKind::Reinit(v, _), Some(slot)) => self.reinits.push((system.layout.var(*v), values[slot])),
+                (EventActionKind::Terminate(message), _) => {
                     outcome.terminate.get_or_insert_with(|| message_text(system, message, values));
                 }
-                (ActionKind::Assert(assert), Some(slot)) if values[slot] == 0.0 => {
+                (EventActionKind::Assert(assert), Some(slot)) if values[slot] == 0.0 => {
                     outcome.failed.push((i, message_text(system, &assert.message, values)));
                 }
                 _ => {}

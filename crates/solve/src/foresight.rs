@@ -11,11 +11,11 @@ mod bounds;
 mod tape;
 
 use super::modes::{RootFunctions, same_time};
-use crate::lower::System;
-use bounds::{Bounds, Span};
+use crate::lower::ExecutableSystem;
+use bounds::{IntervalEnclosure, RealInterval};
 use bramah_expr::function::Function;
 use bramah_model::structure::CrossingKind;
-use tape::{Tape, Writer};
+use tape::{RelationTape, TapeWriter};
 
 /// Stretches shorter than this part of the time are not halved: times so close are the same.
 const SHORTEST: f64 = 1e-12;
@@ -35,19 +35,19 @@ const TOWARDS_TOP: u32 = 20;
 
 /// What is watched ahead.
 #[derive(Debug)]
-pub struct Foresight<'a> {
+pub struct CrossingForecast<'a> {
     functions: &'a [Function],
-    watched: Vec<Watched>,
+    watched: Vec<WatchedRelation>,
     /// Length of the run.
     span: f64,
 }
 
 /// A relation of time, and what is known of its next change.
 #[derive(Debug)]
-struct Watched {
+struct WatchedRelation {
     /// Among the root functions.
     root: usize,
-    tape: Tape,
+    tape: RelationTape,
     /// The values at events with which the rest was found.
     held: Vec<f64>,
     /// Added to the difference, as in the root function.
@@ -64,17 +64,17 @@ struct Watched {
     pieces: u64,
 }
 
-impl<'a> Foresight<'a> {
+impl<'a> CrossingForecast<'a> {
     /// For all relations of time alone.
-    pub fn new(system: &'a System, roots: &RootFunctions, span: f64) -> Self {
-        let writer = Writer::new(system);
+    pub fn new(system: &'a ExecutableSystem, roots: &RootFunctions, span: f64) -> Self {
+        let writer = TapeWriter::new(system);
         let watched = (0..roots.len()).filter_map(|root| {
             let CrossingKind::Relation(_, left, right) = system.dae.crossings[roots.crossing(root)].kind else {
                 return None;
             };
-            Some(Watched::new(root, writer.difference(left, right)?))
+            Some(WatchedRelation::new(root, writer.difference(left, right)?))
         });
-        Foresight { functions: &system.dae.exprs.functions, watched: watched.collect(), span: span.abs() }
+        CrossingForecast { functions: &system.dae.exprs.functions, watched: watched.collect(), span: span.abs() }
     }
 
     /// The first time after `t` that must not be passed without an event, within a peak; `until` if there is none before.
@@ -105,12 +105,12 @@ fn reached(at: f64, t: f64) -> bool {
     at <= t || same_time(at, t)
 }
 
-impl Watched {
-    fn new(root: usize, tape: Tape) -> Self {
+impl WatchedRelation {
+    fn new(root: usize, tape: RelationTape) -> Self {
         let pieces = if tape.bounded { PIECES } else { 0 };
         // of no side yet
         let (shift, from, clear) = (f64::NAN, 0.0, 0.0);
-        Watched { root, tape, held: Vec::new(), shift, from, clear, change: None, within: None, pieces }
+        WatchedRelation { root, tape, held: Vec::new(), shift, from, clear, change: None, within: None, pieces }
     }
 
     /// Keeps what is known while it holds: the side and the values at events have not changed.
@@ -147,7 +147,8 @@ impl Watched {
         }
         let shift = if self.change.is_none() { self.shift } else { -self.shift };
         let (tape, held, values, bounds) = (&self.tape, &self.held, Vec::new(), Vec::new());
-        let found = Search { tape, functions, held, shift, span, values, bounds }.first(from, until, &mut self.pieces);
+        let found =
+            CrossingSearch { tape, functions, held, shift, span, values, bounds }.first(from, until, &mut self.pieces);
         if found.is_some() && self.pieces > 0 {
             self.pieces += PIECES_PER_CHANGE;
         }
@@ -156,17 +157,17 @@ impl Watched {
 }
 
 /// One search.
-struct Search<'a> {
-    tape: &'a Tape,
+struct CrossingSearch<'a> {
+    tape: &'a RelationTape,
     functions: &'a [Function],
     held: &'a [f64],
     shift: f64,
     span: f64,
     values: Vec<f64>,
-    bounds: Vec<Bounds>,
+    bounds: Vec<IntervalEnclosure>,
 }
 
-impl Search<'_> {
+impl CrossingSearch<'_> {
     /// How far the difference is from its change: negative behind it.
     fn distance(&mut self, t: f64) -> f64 {
         let difference = self.tape.at(self.functions, self.held, t, &mut self.values);
@@ -189,42 +190,43 @@ impl Search<'_> {
             }
             *pieces -= 1;
             match self.judge(a, b) {
-                Piece::Clear => {
+                CrossingCheck::Clear => {
                     stack.pop();
                     a = b;
                 }
-                Piece::Changes(t) => return Some(t),
-                Piece::Unsure => stack.push(a + 0.5 * (b - a)),
+                CrossingCheck::Changes(t) => return Some(t),
+                CrossingCheck::Unsure => stack.push(a + 0.5 * (b - a)),
             }
         }
         None
     }
 
     /// What bounds tell of a stretch at whose beginning nothing has changed.
-    fn judge(&mut self, a: f64, b: f64) -> Piece {
-        let Bounds { value, slope } = self.tape.over(self.held, Span { lo: a, hi: b }, &mut self.bounds);
+    fn judge(&mut self, a: f64, b: f64) -> CrossingCheck {
+        let IntervalEnclosure { value, slope } =
+            self.tape.over(self.held, RealInterval { lo: a, hi: b }, &mut self.bounds);
         let falls = self.shift > 0.0;
         // the nearest that the difference may come to its change
-        let reach = |value: Span| if falls { value.lo + self.shift } else { -value.hi - self.shift };
+        let reach = |value: RealInterval| if falls { value.lo + self.shift } else { -value.hi - self.shift };
         if reach(value) > 0.0 {
-            return Piece::Clear;
+            return CrossingCheck::Clear;
         }
         if !slope.holds_zero() {
             let away = (slope.lo > 0.0) == falls;
             return match () {
-                () if away || !self.changed(b) => Piece::Clear,
-                () => Piece::Changes(self.bisect(a, b)),
+                () if away || !self.changed(b) => CrossingCheck::Clear,
+                () => CrossingCheck::Changes(self.bisect(a, b)),
             };
         }
         let middle = a + 0.5 * (b - a);
         if b - a <= SHORTEST * b.abs().max(SHORTEST_OF_RUN / SHORTEST * self.span) || middle <= a || middle >= b {
-            return if self.changed(b) { Piece::Changes(b) } else { Piece::Clear };
+            return if self.changed(b) { CrossingCheck::Changes(b) } else { CrossingCheck::Clear };
         }
         let centre = self.tape.at(self.functions, self.held, middle, &mut self.values);
-        let aside = slope.mul(Span::new(a - middle, b - middle));
-        let straight = Span::new(centre + aside.lo, centre + aside.hi);
+        let aside = slope.mul(RealInterval::new(a - middle, b - middle));
+        let straight = RealInterval::new(centre + aside.lo, centre + aside.hi);
         let rounding = 64.0 * f64::EPSILON * self.size();
-        if reach(straight) > rounding { Piece::Clear } else { Piece::Unsure }
+        if reach(straight) > rounding { CrossingCheck::Clear } else { CrossingCheck::Unsure }
     }
 
     /// The largest value that the last evaluation met: what rounding is measured by.
@@ -296,7 +298,7 @@ impl Search<'_> {
 }
 
 /// What is known of a stretch of time.
-enum Piece {
+enum CrossingCheck {
     Clear,
     Changes(f64),
     Unsure,

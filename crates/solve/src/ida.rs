@@ -8,9 +8,11 @@ mod context;
 mod operations;
 mod sensitivity;
 
-use super::linear::{Lu, Singular};
-use crate::lower::Pattern;
-use context::{Context, new_matrix, new_solver, new_vector, on_crossings, on_jacobian, on_residual, on_weights, slice};
+use super::linear::{Lu, SingularMatrix};
+use crate::lower::SparsityPattern;
+use context::{
+    IdaContext, new_matrix, new_solver, new_vector, on_crossings, on_jacobian, on_residual, on_weights, slice,
+};
 use std::os::raw::{c_int, c_long, c_void};
 use std::ptr::null_mut;
 use sundials_sys as s;
@@ -21,7 +23,7 @@ const MOST_FAILURES: c_int = 30;
 
 /// How an evaluation went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Evaluation {
+pub enum EvaluationStatus {
     /// All values are finite.
     Done,
     /// Some value is not: IDA shall try a smaller step.
@@ -29,26 +31,26 @@ pub enum Evaluation {
 }
 
 /// The equations `F(t, y, y') = 0` and their zero crossings.
-pub trait Equations {
+pub trait DaeEquations {
     /// Writes `F(t, y, yp)` to `r`.
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation;
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus;
 
     /// The same with rows that say how fast each unknown moves, where there are such rows.
-    fn rate_residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation {
+    fn rate_residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus {
         self.residual(t, y, yp, r)
     }
 
     /// Writes every entry of `dF/dy + cj dF/dyp` to `val`, in the order of the pattern.
-    fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> Evaluation;
+    fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> EvaluationStatus;
 
     /// Writes the functions whose sign changes are sought to `g`.
     fn crossings(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]);
 }
 
 /// Equations with derivatives along a direction.
-pub trait Differentiable: Equations {
+pub trait DifferentiableEquations: DaeEquations {
     /// Prepares dF/dy and dF/dyp at a point; nothing is done where they stand there already.
-    fn differentiate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Evaluation;
+    fn differentiate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> EvaluationStatus;
 
     /// The equations themselves have changed, as at an event.
     fn forget(&mut self);
@@ -59,7 +61,7 @@ pub trait Differentiable: Equations {
 
 /// Why a call of [`Ida::advance`] returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reached {
+pub enum AdvanceReturn {
     /// The output time, by interpolation.
     Output,
     /// The stop time, exactly.
@@ -72,13 +74,13 @@ pub enum Reached {
 
 /// Why IDA gave up.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Failure {
+pub enum IdaFailure {
     /// The error test failed too often, or with the smallest step.
     ErrorTest,
     /// The corrector did not converge.
     Convergence,
     /// The Jacobian stayed singular; the unknown without pivot, if known.
-    Singular(Option<Singular>),
+    Singular(Option<SingularMatrix>),
     /// The equations stayed not finite however small the step.
     NonFinite,
     /// More accuracy was asked for than numbers of 64 bits give.
@@ -91,7 +93,7 @@ pub enum Failure {
 
 /// Tolerances.
 #[derive(Clone, Debug)]
-pub struct Tolerances {
+pub struct IntegratorTolerances {
     /// Relative to the values.
     pub relative: f64,
     /// Absolute, per unknown; positive.
@@ -103,7 +105,7 @@ pub struct Tolerances {
 
 /// Work done since the beginning, restarts included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct IntegratorCounters {
     /// Accepted steps.
     pub steps: u64,
     /// Evaluations of the equations.
@@ -121,7 +123,7 @@ pub struct Work {
 }
 
 /// One integrator.
-pub struct Ida<E: Equations> {
+pub struct Ida<E: DaeEquations> {
     sundials: s::SUNContext,
     memory: *mut c_void,
     y: s::N_Vector,
@@ -129,31 +131,31 @@ pub struct Ida<E: Equations> {
     scratch: s::N_Vector,
     matrix: s::SUNMatrix,
     solver: s::SUNLinearSolver,
-    context: *mut Context<E>,
+    context: *mut IdaContext<E>,
     n: usize,
     /// Sensitivities handed over: values, then rates.
     tangents: Vec<s::N_Vector>,
     /// Work done before the last restart.
-    before: Work,
+    before: IntegratorCounters,
     found: Vec<c_int>,
 }
 
 // SAFETY: the C objects are owned by this value alone and SUNDIALS keeps no thread-local state.
-unsafe impl<E: Equations + Send> Send for Ida<E> {}
+unsafe impl<E: DaeEquations + Send> Send for Ida<E> {}
 
-impl<E: Equations> Ida<E> {
+impl<E: DaeEquations> Ida<E> {
     /// An integrator at time `t` with consistent `y` and `yp` (at least one unknown).
     ///
     /// # Errors
-    /// [`Failure::Code`] when SUNDIALS refuses the input.
+    /// [`IdaFailure::Code`] when SUNDIALS refuses the input.
     pub fn new(
         equations: E,
-        pattern: &Pattern,
+        pattern: &SparsityPattern,
         lu: Lu,
         roots: usize,
-        tolerances: &Tolerances,
+        tolerances: &IntegratorTolerances,
         (t, y, yp): (f64, &[f64], &[f64]),
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, IdaFailure> {
         let n = pattern.n;
         assert!(n > 0 && y.len() == n && yp.len() == n && tolerances.absolute.len() == n, "sizes agree");
         let mut sundials = null_mut();
@@ -162,7 +164,7 @@ impl<E: Equations> Ida<E> {
             assert_eq!(s::SUNContext_Create(s::comm_no_mpi(), &raw mut sundials), 0, "SUNDIALS has no memory");
             s::SUNContext_ClearErrHandlers(sundials);
         }
-        let context = Box::into_raw(Box::new(Context {
+        let context = Box::into_raw(Box::new(IdaContext {
             equations,
             n,
             roots,
@@ -187,14 +189,14 @@ impl<E: Equations> Ida<E> {
             context,
             n,
             tangents: Vec::new(),
-            before: Work::default(),
+            before: IntegratorCounters::default(),
             found: vec![0; roots],
         };
         ida.configure(t)?;
         Ok(ida)
     }
 
-    fn configure(&mut self, t: f64) -> Result<(), Failure> {
+    fn configure(&mut self, t: f64) -> Result<(), IdaFailure> {
         let roots = c_int::try_from(self.found.len()).expect("fewer than 2^31 crossings");
         // SAFETY: all objects are alive
         unsafe {
@@ -259,8 +261,8 @@ impl<E: Equations> Ida<E> {
     /// about all of them again.
     ///
     /// # Errors
-    /// [`Failure::Code`] when SUNDIALS refuses the input.
-    pub fn leave_out(&mut self, untested: &[bool]) -> Result<(), Failure> {
+    /// [`IdaFailure::Code`] when SUNDIALS refuses the input.
+    pub fn leave_out(&mut self, untested: &[bool]) -> Result<(), IdaFailure> {
         let some = untested.contains(&true);
         // SAFETY: the vectors are ours and not borrowed; IDA copies the marks
         unsafe {
@@ -276,8 +278,8 @@ impl<E: Equations> Ida<E> {
     /// Forgets the past and starts again at `t` from these values.
     ///
     /// # Errors
-    /// [`Failure::Code`] when SUNDIALS refuses the input.
-    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
+    /// [`IdaFailure::Code`] when SUNDIALS refuses the input.
+    pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), IdaFailure> {
         self.before = self.work();
         // SAFETY: the vectors are ours and not borrowed; IDA copies them
         unsafe {
@@ -311,15 +313,15 @@ impl<E: Equations> Ida<E> {
         out.resize(self.n, 0.0);
         context.residual_calls += 1;
         if explicit {
-            let done = context.equations.rate_residual(t + h, &predicted, yp, out) == Evaluation::Done;
+            let done = context.equations.rate_residual(t + h, &predicted, yp, out) == EvaluationStatus::Done;
             out.iter_mut().for_each(|r| *r *= -h);
             return done;
         }
-        if context.equations.residual(t + h, &predicted, yp, out) == Evaluation::Retry {
+        if context.equations.residual(t + h, &predicted, yp, out) == EvaluationStatus::Retry {
             return false;
         }
         context.jacobian_calls += 1;
-        if context.equations.jacobian(t + h, 1.0 / h, &predicted, yp, val) == Evaluation::Retry
+        if context.equations.jacobian(t + h, 1.0 / h, &predicted, yp, val) == EvaluationStatus::Retry
             || context.lu.factor(val).is_err()
         {
             return false;
@@ -342,7 +344,7 @@ impl<E: Equations> Ida<E> {
             let context = &mut *self.context;
             context.residual_calls += 1;
             let (y, yp) = (slice(self.scratch, self.n), slice(rate, self.n));
-            let done = known && context.equations.rate_residual(t, y, yp, out) == Evaluation::Done;
+            let done = known && context.equations.rate_residual(t, y, yp, out) == EvaluationStatus::Done;
             s::N_VDestroy(rate);
             done
         }
@@ -387,7 +389,7 @@ impl<E: Equations> Ida<E> {
         unsafe { s::IDASetStopTime(self.memory, t) };
     }
 
-    /// Returns [`Reached::Pause`] after so many steps within one call; 0 never does.
+    /// Returns [`AdvanceReturn::Pause`] after so many steps within one call; 0 never does.
     pub fn pause_after(&mut self, steps: u32) {
         // SAFETY: plain setter; a negative number means no limit
         unsafe { s::IDASetMaxNumSteps(self.memory, if steps == 0 { -1 } else { c_long::from(steps) }) };
@@ -396,36 +398,36 @@ impl<E: Equations> Ida<E> {
     /// Integrates until `to`, the stop time or a root, whichever comes first; returns the time reached.
     ///
     /// # Errors
-    /// See [`Failure`]; `y` and `yp` hold the last accepted values.
-    pub fn advance(&mut self, to: f64) -> Result<(Reached, f64), (Failure, f64)> {
+    /// See [`IdaFailure`]; `y` and `yp` hold the last accepted values.
+    pub fn advance(&mut self, to: f64) -> Result<(AdvanceReturn, f64), (IdaFailure, f64)> {
         let mut t = 0.0;
         // SAFETY: all objects are alive; callbacks reach the context through its own pointer while no reference to it
         // is held here
         let code = unsafe { s::IDASolve(self.memory, to, &raw mut t, self.y, self.yp, s::IDA_NORMAL) };
         match code {
-            s::IDA_TSTOP_RETURN => Ok((Reached::Stop, t)),
-            s::IDA_ROOT_RETURN => Ok((Reached::Root, t)),
-            s::IDA_TOO_MUCH_WORK => Ok((Reached::Pause, t)),
-            0.. => Ok((Reached::Output, t)),
+            s::IDA_TSTOP_RETURN => Ok((AdvanceReturn::Stop, t)),
+            s::IDA_ROOT_RETURN => Ok((AdvanceReturn::Root, t)),
+            s::IDA_TOO_MUCH_WORK => Ok((AdvanceReturn::Pause, t)),
+            0.. => Ok((AdvanceReturn::Output, t)),
             _ => Err((self.failure(code), t)),
         }
     }
 
-    fn failure(&mut self, code: c_int) -> Failure {
+    fn failure(&mut self, code: c_int) -> IdaFailure {
         // SAFETY: no callback runs
         let context = unsafe { &mut *self.context };
         if let Some(text) = context.panic.take() {
-            return Failure::Panic(text);
+            return IdaFailure::Panic(text);
         }
         match code {
-            s::IDA_ERR_FAIL => Failure::ErrorTest,
-            s::IDA_REP_RES_ERR | s::IDA_FIRST_RES_FAIL => Failure::NonFinite,
-            _ if context.non_finite && context.singular.is_none() => Failure::NonFinite,
-            s::IDA_CONV_FAIL if context.singular.is_some() => Failure::Singular(context.singular),
-            s::IDA_CONV_FAIL => Failure::Convergence,
-            s::IDA_LSETUP_FAIL | s::IDA_LSOLVE_FAIL => Failure::Singular(context.singular),
-            s::IDA_TOO_MUCH_ACC => Failure::TooMuchAccuracy,
-            _ => Failure::Code(code),
+            s::IDA_ERR_FAIL => IdaFailure::ErrorTest,
+            s::IDA_REP_RES_ERR | s::IDA_FIRST_RES_FAIL => IdaFailure::NonFinite,
+            _ if context.non_finite && context.singular.is_none() => IdaFailure::NonFinite,
+            s::IDA_CONV_FAIL if context.singular.is_some() => IdaFailure::Singular(context.singular),
+            s::IDA_CONV_FAIL => IdaFailure::Convergence,
+            s::IDA_LSETUP_FAIL | s::IDA_LSOLVE_FAIL => IdaFailure::Singular(context.singular),
+            s::IDA_TOO_MUCH_ACC => IdaFailure::TooMuchAccuracy,
+            _ => IdaFailure::Code(code),
         }
     }
 
@@ -491,7 +493,7 @@ impl<E: Equations> Ida<E> {
     }
 
     /// Work done since the beginning.
-    pub fn work(&self) -> Work {
+    pub fn work(&self) -> IntegratorCounters {
         let (mut steps, mut failures, mut convergence) = (0, 0, 0);
         // SAFETY: plain getters; the context is only read
         unsafe {
@@ -499,7 +501,7 @@ impl<E: Equations> Ida<E> {
             s::IDAGetNumErrTestFails(self.memory, &raw mut failures);
             s::IDAGetNumNonlinSolvConvFails(self.memory, &raw mut convergence);
             let (c, b) = (&*self.context, &self.before);
-            Work {
+            IntegratorCounters {
                 steps: b.steps + steps.unsigned_abs(),
                 residuals: b.residuals + c.residual_calls,
                 jacobians: b.jacobians + c.jacobian_calls,
@@ -512,7 +514,7 @@ impl<E: Equations> Ida<E> {
     }
 }
 
-impl<E: Equations> Drop for Ida<E> {
+impl<E: DaeEquations> Drop for Ida<E> {
     fn drop(&mut self) {
         // SAFETY: each object is freed once, users before what they use
         unsafe {
@@ -528,8 +530,8 @@ impl<E: Equations> Drop for Ida<E> {
     }
 }
 
-fn check(code: c_int) -> Result<(), Failure> {
-    if code >= 0 { Ok(()) } else { Err(Failure::Code(code)) }
+fn check(code: c_int) -> Result<(), IdaFailure> {
+    if code >= 0 { Ok(()) } else { Err(IdaFailure::Code(code)) }
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! Consistent values at the start: parameters, guesses, the initial system by damped Newton, homotopy where needed.
 
-use super::blocks::{BlockFailure, Blocks, Setting};
-use super::modes::Modes;
-use super::newton::{NewtonFailure, Reason, Scales};
+use super::blocks::{BlockContext, BlockFailure, BlockWorkspace};
+use super::modes::CrossingModes;
+use super::newton::{NewtonFailure, NewtonFailureReason, VariableScales};
 use super::report;
 use super::settings::Settings;
-use crate::lower::{Layout, System};
-use bramah_expr::{ExprId, Node, VarId};
-use bramah_model::flat::{Equation, Origin, OriginKind, Type, Variability};
-use bramah_model::structure::{Block, Dae, Unknown, places, starts};
+use crate::lower::{ExecutableSystem, ValueLayout};
+use bramah_expr::{ExprId, ExprNode, VarId};
+use bramah_model::flat::{ElementOrigin, FlatEquation, OriginKind, ScalarType, Variability};
+use bramah_model::structure::{BltBlock, Dae, Unknown, places, starts};
 use bramah_syntax::diag::{Code, Diagnostic};
 
 /// A redundant fixed start may be off by this part of its size.
@@ -18,7 +18,7 @@ const CHECK_TOLERANCE: f64 = 1e-6;
 const SMALLEST_STEP: f64 = 1e-4;
 
 /// Parameters as the settings say, and start values as guesses in all other variables.
-pub fn prepare(system: &System, settings: &Settings) -> Vec<f64> {
+pub fn prepare(system: &ExecutableSystem, settings: &Settings) -> Vec<f64> {
     let mut values = system.layout.values();
     let mut overridden = vec![false; if settings.parameters.is_empty() { 0 } else { system.dae.variables.len() }];
     for &(v, value) in &settings.parameters {
@@ -26,7 +26,7 @@ pub fn prepare(system: &System, settings: &Settings) -> Vec<f64> {
         overridden[v.index()] = true;
     }
     system.evaluate_parameters(&mut values, &overridden);
-    values[Layout::TIME] = settings.start_time;
+    values[ValueLayout::TIME] = settings.start_time;
     guess(system, &mut values);
     values
 }
@@ -36,7 +36,7 @@ pub fn prepare(system: &System, settings: &Settings) -> Vec<f64> {
 ///
 /// # Errors
 /// The first assertion that does not hold (E503).
-pub fn check_parameters(system: &System, settings: &Settings, values: &[f64]) -> Result<(), Diagnostic> {
+pub fn check_parameters(system: &ExecutableSystem, settings: &Settings, values: &[f64]) -> Result<(), Diagnostic> {
     if settings.parameters.is_empty() {
         return Ok(());
     }
@@ -51,14 +51,14 @@ pub fn check_parameters(system: &System, settings: &Settings, values: &[f64]) ->
     }
 }
 
-fn guess(system: &System, values: &mut [f64]) {
+fn guess(system: &ExecutableSystem, values: &mut [f64]) {
     for (v, variable) in (0..).map(VarId).zip(&system.dae.variables) {
         let free = system.dae.free_parameters.contains(&v);
         if variable.variability <= Variability::Parameter && !free {
             continue;
         }
         let value = system.start(v, values).filter(|s| s.is_finite()).unwrap_or_else(|| {
-            let nothing = if matches!(variable.ty, Type::Enumeration(_)) { 1.0_f64 } else { 0.0 };
+            let nothing = if matches!(variable.ty, ScalarType::Enumeration(_)) { 1.0_f64 } else { 0.0 };
             let nothing = system.min(v, values).map_or(nothing, |min| nothing.max(min));
             system.max(v, values).map_or(nothing, |max| nothing.min(max))
         });
@@ -74,10 +74,16 @@ fn guess(system: &System, values: &mut [f64]) {
 ///
 /// # Errors
 /// What could not be solved; `values` is where it failed.
-pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [f64]) -> Result<(), BlockFailure> {
-    values[Layout::INITIAL] = 1.0;
+pub fn solve(
+    system: &ExecutableSystem,
+    scales: &VariableScales,
+    modes: &mut CrossingModes,
+    values: &mut [f64],
+) -> Result<(), BlockFailure> {
+    values[ValueLayout::INITIAL] = 1.0;
     modes.after = false;
-    let mut start = Start { system, scales, modes, blocks: Blocks::new(&system.initial, scales, modes) };
+    let mut start =
+        InitialSystemSolver { system, scales, modes, blocks: BlockWorkspace::new(&system.initial, scales, modes) };
     let guesses = values.to_vec();
     // the root that the model asks for is the one that the simplified equations lead to (MLS 3.7.4)
     let followed = worth_homotopy(&system.dae) && start.homotopy(values, &guesses).is_ok();
@@ -85,11 +91,11 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
         Ok(())
     } else {
         values.copy_from_slice(&guesses);
-        values[Layout::LAMBDA] = 1.0;
+        values[ValueLayout::LAMBDA] = 1.0;
         start.run(values)
     };
     let result = match result {
-        Err(BlockFailure::Loop(failure)) if failure.reason == Reason::NoConvergence => {
+        Err(BlockFailure::Loop(failure)) if failure.reason == NewtonFailureReason::NoConvergence => {
             let failed = values.to_vec();
             start.elsewhere(&failure, values, &guesses).map_err(|_| {
                 values.copy_from_slice(&failed);
@@ -98,8 +104,8 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
         }
         other => other,
     };
-    values[Layout::LAMBDA] = 1.0;
-    values[Layout::INITIAL] = 0.0;
+    values[ValueLayout::LAMBDA] = 1.0;
+    values[ValueLayout::INITIAL] = 0.0;
     modes.after = true;
     result
 }
@@ -109,13 +115,17 @@ pub fn solve(system: &System, scales: &Scales, modes: &mut Modes, values: &mut [
 ///
 /// # Errors
 /// The first fixed one that does not (E401).
-pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<Vec<Diagnostic>, Diagnostic> {
+pub fn check_starts(
+    system: &ExecutableSystem,
+    scales: &VariableScales,
+    values: &[f64],
+) -> Result<Vec<Diagnostic>, Diagnostic> {
     let mut missed = Vec::new();
     for &(residual, equation) in &system.dae.initial_checks {
         let equation = &system.dae.equations[equation as usize];
         let (found, asked) = (system.eval(equation.lhs, values), system.eval(equation.rhs, values));
         let nominal = match system.dae.exprs.node(equation.lhs) {
-            Node::Var(v) | Node::Der(v) => scales.nominal[v.index()],
+            ExprNode::Var(v) | ExprNode::Der(v) => scales.nominal[v.index()],
             // the terms of a sum cancel
             _ => terms(system, equation, values),
         };
@@ -132,14 +142,14 @@ pub fn check_starts(system: &System, scales: &Scales, values: &[f64]) -> Result<
 
 /// The variable whose start a check is, where that is not `fixed` beside one that is: a guess, as the language has it
 /// (MLS 8.6).
-fn guessed(dae: &Dae, equation: &Equation) -> Option<VarId> {
+fn guessed(dae: &Dae, equation: &FlatEquation) -> Option<VarId> {
     match dae.exprs.node(equation.lhs) {
-        Node::Var(v) if equation.origin.kind == OriginKind::Guess => Some(v),
+        ExprNode::Var(v) if equation.origin.kind == OriginKind::Guess => Some(v),
         _ => None,
     }
 }
 
-fn missed_start(system: &System, v: VarId, equation: &Equation, found: f64, asked: f64) -> Diagnostic {
+fn missed_start(system: &ExecutableSystem, v: VarId, equation: &FlatEquation, found: f64, asked: f64) -> Diagnostic {
     let dae = &system.dae;
     let name = dae.text(equation.lhs);
     let text = format!(
@@ -147,7 +157,7 @@ fn missed_start(system: &System, v: VarId, equation: &Equation, found: f64, aske
         report::number(found),
         report::number(asked)
     );
-    let origin = Origin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
+    let origin = ElementOrigin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
     let made = report::at_origin(dae, Code::StartMissed, text, origin, "its `start` was taken as a guess");
     match starts::modifier(&name, true) {
         Some(m) => made.help(format!("if it must hold, write `fixed = true` beside it: `{m}`")),
@@ -156,23 +166,23 @@ fn missed_start(system: &System, v: VarId, equation: &Equation, found: f64, aske
 }
 
 /// The largest value of a variable that an equation reads.
-fn terms(system: &System, equation: &Equation, values: &[f64]) -> f64 {
+fn terms(system: &ExecutableSystem, equation: &FlatEquation, values: &[f64]) -> f64 {
     let dae = &system.dae;
     let read = [equation.lhs, equation.rhs].into_iter().flat_map(|e| dae.exprs.variables(e));
     read.map(|v| values[system.layout.var(v)].abs()).fold(0.0, f64::max)
 }
 
-fn contradiction(system: &System, equation: &Equation, found: f64, asked: f64) -> Diagnostic {
+fn contradiction(system: &ExecutableSystem, equation: &FlatEquation, found: f64, asked: f64) -> Diagnostic {
     let dae = &system.dae;
     let name = dae.text(equation.lhs);
     let (found, asked) = (report::number(found), report::number(asked));
     let text =
         format!("`{name}` is to start at {asked}, but the other start values and the constraints make it {found}");
-    let Node::Var(v) = dae.exprs.node(equation.lhs) else {
+    let ExprNode::Var(v) = dae.exprs.node(equation.lhs) else {
         return report::at_origin(dae, Code::InitialOver, text, equation.origin, "this start is fixed")
             .help("fix fewer of the starts that the constraints tie together, or give values that fit");
     };
-    let origin = Origin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
+    let origin = ElementOrigin { span: places::place_of(&dae.variables, &dae.instances, v), ..equation.origin };
     let label = format!("`{name}` is fixed at the start");
     let behind = starts::parameter_behind(&dae.exprs, &dae.variables, v);
     let freed = starts::modifier(&name, false).map(|m| format!("let it follow from the others: `{m}`"));
@@ -183,21 +193,21 @@ fn contradiction(system: &System, equation: &Equation, found: f64, asked: f64) -
 }
 
 fn worth_homotopy(dae: &Dae) -> bool {
-    let is_homotopy = |e: u32| matches!(dae.exprs.node(ExprId(e)), Node::Homotopy(..));
-    let loops = dae.initial.iter().any(|b| !matches!(b, Block::Assign(_)));
+    let is_homotopy = |e: u32| matches!(dae.exprs.node(ExprId(e)), ExprNode::Homotopy(..));
+    let loops = dae.initial.iter().any(|b| !matches!(b, BltBlock::Assign(_)));
     loops && (0..u32::try_from(dae.exprs.len()).unwrap_or(0)).any(is_homotopy)
 }
 
-struct Start<'a> {
-    system: &'a System,
-    scales: &'a Scales,
-    modes: &'a Modes,
-    blocks: Blocks,
+struct InitialSystemSolver<'a> {
+    system: &'a ExecutableSystem,
+    scales: &'a VariableScales,
+    modes: &'a CrossingModes,
+    blocks: BlockWorkspace,
 }
 
-impl Start<'_> {
+impl InitialSystemSolver<'_> {
     fn run(&mut self, values: &mut [f64]) -> Result<(), BlockFailure> {
-        let setting = Setting { system: self.system, scales: self.scales, modes: self.modes };
+        let setting = BlockContext { system: self.system, scales: self.scales, modes: self.modes };
         self.blocks.run(&self.system.initial, &setting, values)?;
         if !self.system.dae.free_parameters.is_empty() {
             self.system.parameters_changed(values);
@@ -212,7 +222,7 @@ impl Start<'_> {
         let mut last = Ok(());
         for part in [1.0, 10.0, 0.1] {
             values.copy_from_slice(guesses);
-            values[Layout::LAMBDA] = 1.0;
+            values[ValueLayout::LAMBDA] = 1.0;
             for &(unknown, ..) in &failure.unknowns {
                 let Unknown::Var(v) = unknown else { continue };
                 let i = v.index();
@@ -230,13 +240,13 @@ impl Start<'_> {
     /// From the simplified system to the actual one in steps that grow while they succeed.
     fn homotopy(&mut self, values: &mut [f64], guesses: &[f64]) -> Result<(), BlockFailure> {
         values.copy_from_slice(guesses);
-        values[Layout::LAMBDA] = 0.0;
+        values[ValueLayout::LAMBDA] = 0.0;
         self.run(values)?;
         let (mut at, mut step) = (0.0_f64, 0.25_f64);
         let mut last = values.to_vec();
         while at < 1.0 {
             let next = (at + step).min(1.0);
-            values[Layout::LAMBDA] = next;
+            values[ValueLayout::LAMBDA] = next;
             match self.run(values) {
                 Ok(()) => {
                     last.copy_from_slice(values);
@@ -259,7 +269,7 @@ impl Start<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lower::{Options, lower};
+    use crate::lower::{LoweringOptions, lower};
     use std::sync::Arc;
 
     /// Two wheels in mesh with both speeds fixed.
@@ -275,10 +285,10 @@ mod tests {
         );
         let flat = bramah_model::compile::flatten_text(&text, None).value.expect("sound").flat;
         let dae = bramah_model::compile::analyze(&flat).value.expect("sound");
-        let system = lower(Arc::new(dae), &Options::INTERPRETED);
+        let system = lower(Arc::new(dae), &LoweringOptions::INTERPRETED);
         let mut values = prepare(&system, &Settings::default());
-        let scales = Scales::new(&system, &values);
-        let mut modes = Modes::new(&system, 1e-6);
+        let scales = VariableScales::new(&system, &values);
+        let mut modes = CrossingModes::new(&system, 1e-6);
         assert!(solve(&system, &scales, &mut modes, &mut values).is_ok());
         check_starts(&system, &scales, &values)
     }

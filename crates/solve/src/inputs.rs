@@ -1,8 +1,8 @@
 //! Recorded inputs: held (each step is an event) or linear between samples (each sample is a kink that steps respect).
 
 use super::modes::same_time;
-use super::past::Delays;
-use crate::lower::Layout;
+use super::past::DelayBuffers;
+use crate::lower::ValueLayout;
 use bramah_expr::VarId;
 use bramah_model::structure::Dae;
 use bramah_syntax::diag::{Code, Diagnostic};
@@ -20,7 +20,7 @@ pub enum Interpolation {
 
 /// A recorded input. Before the first sample its value holds, after the last one too.
 #[derive(Clone, Debug)]
-pub struct Input {
+pub struct RecordedInput {
     /// The input variable.
     pub variable: VarId,
     /// Times of the samples in seconds, none before the last one; may be shared between inputs. Of several samples at one time
@@ -34,7 +34,7 @@ pub struct Input {
 
 /// E106 for each input of the model that has neither a trajectory nor a value of its own; `help` says what to do about the
 /// one of this name.
-pub fn missing_inputs(dae: &Dae, inputs: &[Input], help: impl Fn(&str) -> Vec<String>) -> Vec<Diagnostic> {
+pub fn missing_inputs(dae: &Dae, inputs: &[RecordedInput], help: impl Fn(&str) -> Vec<String>) -> Vec<Diagnostic> {
     let said = |v: &VarId| {
         let variable = &dae.variables[v.index()];
         let has_value =
@@ -47,30 +47,30 @@ pub fn missing_inputs(dae: &Dae, inputs: &[Input], help: impl Fn(&str) -> Vec<St
     dae.inputs.iter().filter_map(said).collect()
 }
 
-impl Input {
+impl RecordedInput {
     /// An input that holds each sample.
     pub fn held(variable: VarId, times: impl Into<Arc<[f64]>>, values: impl Into<Arc<[f64]>>) -> Self {
-        Input { variable, times: times.into(), values: values.into(), interpolation: Interpolation::Held }
+        RecordedInput { variable, times: times.into(), values: values.into(), interpolation: Interpolation::Held }
     }
 
     /// An input that runs straight between samples.
     pub fn linear(variable: VarId, times: impl Into<Arc<[f64]>>, values: impl Into<Arc<[f64]>>) -> Self {
-        Input { variable, times: times.into(), values: values.into(), interpolation: Interpolation::Linear }
+        RecordedInput { variable, times: times.into(), values: values.into(), interpolation: Interpolation::Linear }
     }
 }
 
 /// All recorded inputs during a run.
 #[derive(Clone, Debug, Default)]
-pub struct Playback {
-    tracks: Vec<Track>,
+pub struct InputPlayback {
+    tracks: Vec<InputTrack>,
     any_linear: bool,
     /// Delayed values: inputs that the run itself records.
-    pub delays: Delays,
+    pub delays: DelayBuffers,
 }
 
 #[derive(Clone, Debug)]
-struct Track {
-    input: Input,
+struct InputTrack {
+    input: RecordedInput,
     slot: usize,
     /// The derivative's slot, if the model uses it.
     der: Option<usize>,
@@ -78,13 +78,13 @@ struct Track {
     at: usize,
 }
 
-impl Playback {
+impl InputPlayback {
     /// Inputs without samples are ignored.
-    pub fn new(inputs: &[Input], layout: &Layout) -> Self {
-        let tracks: Vec<Track> = inputs
+    pub fn new(inputs: &[RecordedInput], layout: &ValueLayout) -> Self {
+        let tracks: Vec<InputTrack> = inputs
             .iter()
             .filter(|i| !i.times.is_empty())
-            .map(|input| Track {
+            .map(|input| InputTrack {
                 input: input.clone(),
                 slot: layout.var(input.variable),
                 der: layout.der(input.variable),
@@ -92,7 +92,7 @@ impl Playback {
             })
             .collect();
         let any_linear = tracks.iter().any(|t| t.input.interpolation == Interpolation::Linear);
-        Playback { tracks, any_linear, delays: Delays::default() }
+        InputPlayback { tracks, any_linear, delays: DelayBuffers::default() }
     }
 
     /// Moves to time `t` (which may lie anywhere) and sets the values that hold just after it.
@@ -129,21 +129,21 @@ impl Playback {
 
     /// The next time after `t` at which an input or a delayed value jumps.
     pub fn next_jump(&self, t: f64) -> f64 {
-        self.next(t, Track::jumps).min(self.delays.next_jump(t))
+        self.next(t, InputTrack::jumps).min(self.delays.next_jump(t))
     }
 
     /// The next time after `t` at which a linear input or a delayed value bends.
     pub fn next_kink(&self, t: f64) -> f64 {
-        let linear = if self.any_linear { self.next(t, Track::bends) } else { f64::INFINITY };
+        let linear = if self.any_linear { self.next(t, InputTrack::bends) } else { f64::INFINITY };
         linear.min(self.delays.next_bend(t))
     }
 
-    fn next(&self, t: f64, changes: impl Fn(&Track, usize) -> bool) -> f64 {
+    fn next(&self, t: f64, changes: impl Fn(&InputTrack, usize) -> bool) -> f64 {
         self.tracks.iter().map(|track| track.next_change(t, &changes)).fold(f64::INFINITY, f64::min)
     }
 }
 
-impl Track {
+impl InputTrack {
     fn set(&self, t: f64, values: &mut [f64]) {
         let (times, samples) = (&self.input.times, &self.input.values);
         let (value, slope) = match self.input.interpolation {
@@ -171,7 +171,7 @@ impl Track {
     }
 
     /// The time of the next sample at which something changes.
-    fn next_change(&self, t: f64, changes: &impl Fn(&Track, usize) -> bool) -> f64 {
+    fn next_change(&self, t: f64, changes: &impl Fn(&InputTrack, usize) -> bool) -> f64 {
         let times = &self.input.times;
         let next = (self.at + 1..times.len()).find(|&k| changes(self, k) && times[k] > t && !same_time(times[k], t));
         next.map_or(f64::INFINITY, |k| times[k])
@@ -195,24 +195,24 @@ mod tests {
     use super::*;
     use bramah_model::structure::Dae;
 
-    fn playback(interpolation: Interpolation) -> (Playback, Vec<f64>) {
+    fn playback(interpolation: Interpolation) -> (InputPlayback, Vec<f64>) {
         playback_of(interpolation, &[(1.0, 10.0), (2.0, 20.0), (3.0, 20.0), (5.0, 0.0)])
     }
 
-    fn playback_of(interpolation: Interpolation, samples: &[(f64, f64)]) -> (Playback, Vec<f64>) {
+    fn playback_of(interpolation: Interpolation, samples: &[(f64, f64)]) -> (InputPlayback, Vec<f64>) {
         let dae = Dae { variables: vec![crate::tests::variable("u")], ..Dae::default() };
-        let layout = Layout::new(&dae);
+        let layout = ValueLayout::new(&dae);
         let values = layout.values();
-        let input = Input {
+        let input = RecordedInput {
             variable: VarId(0),
             times: samples.iter().map(|s| s.0).collect(),
             values: samples.iter().map(|s| s.1).collect(),
             interpolation,
         };
-        (Playback::new(&[input], &layout), values)
+        (InputPlayback::new(&[input], &layout), values)
     }
 
-    fn at(playback: &mut Playback, values: &mut [f64], t: f64) -> f64 {
+    fn at(playback: &mut InputPlayback, values: &mut [f64], t: f64) -> f64 {
         playback.seek(t, values);
         values[playback.tracks[0].slot]
     }

@@ -33,23 +33,23 @@ mod tangents;
 mod vectors;
 
 pub use checkpoint::Checkpoint;
-pub use inputs::{Input, Interpolation, missing_inputs};
-pub use output::{Sink, signals};
-pub use past::Past;
-pub use point::Point;
+pub use inputs::{Interpolation, RecordedInput, missing_inputs};
+pub use output::{RowSink, signals};
+pub use past::DelayHistory;
+pub use point::ConsistentPoint;
 pub use report::at_origin;
 pub use settings::{End, Settings, Statistics};
 pub use state::State;
-pub use tangents::Tangents;
+pub use tangents::TangentRequest;
 
-use crate::lower::System;
+use crate::lower::ExecutableSystem;
 use bramah_model::structure::StateChoice;
 use bramah_syntax::diag::Diagnostic;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 /// Values of all variables before the start, by their slots: parameters as the settings say, guesses for all others.
-pub fn guesses(system: &System, settings: &Settings) -> Vec<f64> {
+pub fn guesses(system: &ExecutableSystem, settings: &Settings) -> Vec<f64> {
     initialize::prepare(system, settings)
 }
 
@@ -70,12 +70,12 @@ pub struct Control<'a> {
     /// Called every now and then; ends the run by returning false.
     pub progress: Option<&'a mut (dyn FnMut(&Progress) -> bool + Send)>,
     /// Analyses the model anew with other states, when those chosen have become singular. Called once for each choice.
-    pub reselect: Option<&'a mut (dyn FnMut(&StateChoice) -> Option<Arc<System>> + Send)>,
+    pub reselect: Option<&'a mut (dyn FnMut(&StateChoice) -> Option<Arc<ExecutableSystem>> + Send)>,
 }
 
 /// What a run came to. The rows are in the sink.
 #[derive(Clone, Debug)]
-pub struct Run {
+pub struct RunResult {
     /// How it ended.
     pub end: End,
     /// The time reached, in seconds.
@@ -93,51 +93,52 @@ pub struct Run {
 /// Where the chosen states become singular and `control.reselect` is given, the run goes on with others. With
 /// `settings.checkpoint_every`, the integrator begins afresh at each checkpoint, and the sink gets it.
 pub fn simulate(
-    system: &System,
+    system: &ExecutableSystem,
     settings: &Settings,
-    inputs: &[Input],
+    inputs: &[RecordedInput],
     from: Option<&State>,
-    sink: &mut dyn Sink,
+    sink: &mut dyn RowSink,
     control: &mut Control<'_>,
-) -> Run {
+) -> RunResult {
     let first = settings.checkpoint(1);
-    let leg = driver::run(system, settings, inputs, from.map(driver::From::State), first, sink, control);
-    let trajectory = Trajectory { system, settings, inputs, states: States::default(), number: 0 };
+    let leg = driver::run(system, settings, inputs, from.map(driver::RunOrigin::State), first, sink, control);
+    let trajectory = SegmentedRun { system, settings, inputs, states: StateSystems::default(), number: 0 };
     trajectory.complete(leg, sink, control)
 }
 
 /// Goes on from a checkpoint of a run of the same system with the same settings and inputs. The rows are, bit for bit,
 /// those that the whole run brings after the checkpoint.
 pub fn resume(
-    system: &System,
+    system: &ExecutableSystem,
     settings: &Settings,
-    inputs: &[Input],
+    inputs: &[RecordedInput],
     from: &Checkpoint,
-    sink: &mut dyn Sink,
+    sink: &mut dyn RowSink,
     control: &mut Control<'_>,
-) -> Run {
-    let mut trajectory = Trajectory { system, settings, inputs, states: States::default(), number: from.number };
+) -> RunResult {
+    let mut trajectory =
+        SegmentedRun { system, settings, inputs, states: StateSystems::default(), number: from.number };
     if from.settled {
         control.reselect = None;
     }
     if let Some(choice) = &from.choice {
         trajectory.states.choose(choice, control);
     }
-    let grid = output::Grid::after(settings.start_time, settings.stop_time, settings.interval, from.rows)
+    let grid = output::OutputGrid::after(settings.start_time, settings.stop_time, settings.interval, from.rows)
         .with_event_rows(settings.most_event_rows);
-    let mut leg = trajectory.leg(driver::From::Switch(&from.state, grid), sink, control);
+    let mut leg = trajectory.leg(driver::RunOrigin::Switch(&from.state, grid), sink, control);
     leg.run.statistics.add(&from.statistics);
     trajectory.complete(leg, sink, control)
 }
 
 /// The states chosen so far, with the systems made for them.
 #[derive(Default)]
-struct States {
-    known: Vec<(StateChoice, Arc<System>)>,
-    present: Option<(StateChoice, Arc<System>)>,
+struct StateSystems {
+    known: Vec<(StateChoice, Arc<ExecutableSystem>)>,
+    present: Option<(StateChoice, Arc<ExecutableSystem>)>,
 }
 
-impl States {
+impl StateSystems {
     /// Goes on with other states if there are any, else with these as long as it lasts.
     fn choose(&mut self, choice: &StateChoice, control: &mut Control<'_>) {
         let found = self.known.iter().find(|(known, _)| known == choice).map(|(_, system)| system.clone());
@@ -154,24 +155,29 @@ impl States {
 }
 
 /// A run in parts: each ends at a checkpoint, or where other states are needed.
-struct Trajectory<'a> {
-    system: &'a System,
+struct SegmentedRun<'a> {
+    system: &'a ExecutableSystem,
     settings: &'a Settings,
-    inputs: &'a [Input],
-    states: States,
+    inputs: &'a [RecordedInput],
+    states: StateSystems,
     /// Checkpoints made.
     number: u64,
 }
 
-impl Trajectory<'_> {
-    fn leg(&self, from: driver::From<'_>, sink: &mut dyn Sink, control: &mut Control<'_>) -> driver::Leg {
+impl SegmentedRun<'_> {
+    fn leg(
+        &self,
+        from: driver::RunOrigin<'_>,
+        sink: &mut dyn RowSink,
+        control: &mut Control<'_>,
+    ) -> driver::RunSegment {
         let system = self.states.present.as_ref().map_or(self.system, |(_, system)| system);
         let until = self.settings.checkpoint(self.number + 1);
         driver::run(system, self.settings, self.inputs, Some(from), until, sink, control)
     }
 
     /// From the end of the first part to the end of the run.
-    fn complete(mut self, mut leg: driver::Leg, sink: &mut dyn Sink, control: &mut Control<'_>) -> Run {
+    fn complete(mut self, mut leg: driver::RunSegment, sink: &mut dyn RowSink, control: &mut Control<'_>) -> RunResult {
         while let Some(switch) = leg.switch.take() {
             match &switch.choice {
                 Some(choice) => self.states.choose(choice, control),
@@ -179,12 +185,12 @@ impl Trajectory<'_> {
                     self.number += 1;
                     let at = self.checkpoint(&leg.run, &switch.grid, control);
                     if sink.checkpoint(&at).is_break() {
-                        return Run { end: End::Interrupted, ..leg.run };
+                        return RunResult { end: End::Interrupted, ..leg.run };
                     }
                 }
             }
             let before = leg.run;
-            leg = self.leg(driver::From::Switch(&before.state, switch.grid), sink, control);
+            leg = self.leg(driver::RunOrigin::Switch(&before.state, switch.grid), sink, control);
             leg.run.statistics.add(&before.statistics);
             // a warning is said once
             let said = |d: &Diagnostic| before.diagnostics.iter().any(|b| b.code == d.code && b.labels == d.labels);
@@ -194,7 +200,7 @@ impl Trajectory<'_> {
         leg.run
     }
 
-    fn checkpoint(&self, run: &Run, grid: &output::Grid, control: &Control<'_>) -> Checkpoint {
+    fn checkpoint(&self, run: &RunResult, grid: &output::OutputGrid, control: &Control<'_>) -> Checkpoint {
         Checkpoint {
             state: run.state.clone(),
             number: self.number,

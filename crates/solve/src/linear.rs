@@ -9,11 +9,11 @@ mod sparse;
 
 pub use sparse::SparseLu;
 
-use crate::lower::Pattern;
+use crate::lower::SparsityPattern;
 
 /// No usable pivot was found: the column depends on those before it, or holds values that are not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Singular {
+pub struct SingularMatrix {
     /// Index of the column, that is of the unknown.
     pub column: usize,
 }
@@ -21,7 +21,7 @@ pub struct Singular {
 /// A factorised square matrix of fixed pattern.
 #[derive(Debug)]
 pub struct Lu {
-    kind: Kind,
+    kind: LuKind,
     /// Factors that keep what the equations do not determine; made when they are first needed.
     keeping: Option<Box<SparseLu>>,
     /// Whether the next factorisation makes them.
@@ -35,21 +35,21 @@ pub struct Lu {
 }
 
 #[derive(Debug)]
-enum Kind {
+enum LuKind {
     Empty,
-    Dense(Box<dyn dense::Dense>),
+    Dense(Box<dyn dense::DenseFactorization>),
     Sparse(Box<SparseLu>),
 }
 
 impl Lu {
     /// Prepares for matrices of this pattern; `column_scale` holds the nominal value of each unknown.
-    pub fn new(pattern: &Pattern, column_scale: &[f64]) -> Self {
+    pub fn new(pattern: &SparsityPattern, column_scale: &[f64]) -> Self {
         let kind = match pattern.n {
-            0 => Kind::Empty,
+            0 => LuKind::Empty,
             n if Self::prefers_dense(n, pattern.nnz()) => {
-                Kind::Dense(dense::new(pattern, column_scale).expect("prefers_dense knows the sizes"))
+                LuKind::Dense(dense::new(pattern, column_scale).expect("prefers_dense knows the sizes"))
             }
-            _ => Kind::Sparse(Box::new(SparseLu::new(pattern, column_scale))),
+            _ => LuKind::Sparse(Box::new(SparseLu::new(pattern, column_scale))),
         };
         Lu { kind, keeping: None, may_keep: false, kept: false, factorizations: 0, pivot_searches: 0 }
     }
@@ -73,8 +73,8 @@ impl Lu {
     /// Factorises the matrix with these entries.
     ///
     /// # Errors
-    /// [`Singular`] when there is no usable pivot; the factors must not be used then.
-    pub fn factor(&mut self, val: &[f64]) -> Result<(), Singular> {
+    /// [`SingularMatrix`] when there is no usable pivot; the factors must not be used then.
+    pub fn factor(&mut self, val: &[f64]) -> Result<(), SingularMatrix> {
         self.factorizations += 1;
         self.kept = self.may_keep;
         if self.kept {
@@ -87,12 +87,12 @@ impl Lu {
             return Ok(());
         }
         match &mut self.kind {
-            Kind::Empty => Ok(()),
-            Kind::Dense(lu) => {
+            LuKind::Empty => Ok(()),
+            LuKind::Dense(lu) => {
                 self.pivot_searches += 1;
                 lu.factor(val)
             }
-            Kind::Sparse(lu) => {
+            LuKind::Sparse(lu) => {
                 let searched = lu.factor(val)?;
                 self.pivot_searches += u64::from(searched);
                 Ok(())
@@ -106,26 +106,26 @@ impl Lu {
             return keeping.solve(b);
         }
         match &mut self.kind {
-            Kind::Empty => true,
-            Kind::Dense(lu) => lu.solve(b),
-            Kind::Sparse(lu) => lu.solve(b),
+            LuKind::Empty => true,
+            LuKind::Dense(lu) => lu.solve(b),
+            LuKind::Sparse(lu) => lu.solve(b),
         }
     }
 }
 
-impl Kind {
+impl LuKind {
     /// Pattern of the matrix and sizes of its unknowns.
-    fn shape(&self) -> Option<(&Pattern, &[f64])> {
+    fn shape(&self) -> Option<(&SparsityPattern, &[f64])> {
         match self {
-            Kind::Empty => None,
-            Kind::Dense(lu) => Some(lu.shape()),
-            Kind::Sparse(lu) => Some(lu.shape()),
+            LuKind::Empty => None,
+            LuKind::Dense(lu) => Some(lu.shape()),
+            LuKind::Sparse(lu) => Some(lu.shape()),
         }
     }
 }
 
 /// `1 / max_j |a_ij| s_j` for each row; 0 for a row without entries.
-fn row_weights(pattern: &Pattern, val: &[f64], column_scale: &[f64], weights: &mut [f64]) {
+fn row_weights(pattern: &SparsityPattern, val: &[f64], column_scale: &[f64], weights: &mut [f64]) {
     weights.fill(0.0);
     for j in 0..pattern.n {
         for k in pattern.colptr[j]..pattern.colptr[j + 1] {

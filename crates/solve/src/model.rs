@@ -1,35 +1,35 @@
 //! A lowered system with its values, as IDA sees it.
 
-use super::ida::{Equations, Evaluation};
-use super::inputs::Playback;
+use super::ida::{DaeEquations, EvaluationStatus};
+use super::inputs::InputPlayback;
 use super::modes::RootFunctions;
-use super::tangents::Slopes;
-use crate::lower::System;
+use super::tangents::ResidualDerivatives;
+use crate::lower::ExecutableSystem;
 
 /// One run's values, and what changes them while the integrator steps.
 #[derive(Clone, Debug)]
-pub struct Model<'a> {
+pub struct IntegrationModel<'a> {
     /// The equations.
-    pub system: &'a System,
+    pub system: &'a ExecutableSystem,
     /// All slots.
     pub values: Vec<f64>,
     /// The functions watched for sign changes.
     pub roots: RootFunctions,
     /// Recorded inputs.
-    pub playback: Playback,
+    pub playback: InputPlayback,
     /// Where the equations last had no finite value: time, y, y'.
     pub trap: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// Derivatives of the equations where they were last asked for.
-    pub slopes: Option<Box<Slopes>>,
+    pub slopes: Option<Box<ResidualDerivatives>>,
 }
 
-impl Model<'_> {
-    fn judge<E>(&mut self, result: Result<(), E>, t: f64, y: &[f64], yp: &[f64]) -> Evaluation {
+impl IntegrationModel<'_> {
+    fn judge<E>(&mut self, result: Result<(), E>, t: f64, y: &[f64], yp: &[f64]) -> EvaluationStatus {
         match result {
-            Ok(()) => Evaluation::Done,
+            Ok(()) => EvaluationStatus::Done,
             Err(_) => {
                 self.trap = Some((t, y.to_vec(), yp.to_vec()));
-                Evaluation::Retry
+                EvaluationStatus::Retry
             }
         }
     }
@@ -59,19 +59,19 @@ impl Model<'_> {
     }
 }
 
-impl Equations for Model<'_> {
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation {
+impl DaeEquations for IntegrationModel<'_> {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus {
         if self.system.columns.is_empty() {
             // the constant that stands in for a system without unknowns
             r[0] = yp[0];
-            return Evaluation::Done;
+            return EvaluationStatus::Done;
         }
         self.playback.follow(t, &mut self.values);
         let result = self.system.residual(t, y, yp, &mut self.values, r);
         self.judge(result, t, y, yp)
     }
 
-    fn rate_residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation {
+    fn rate_residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus {
         if self.system.columns.is_empty() {
             return self.residual(t, y, yp, r);
         }
@@ -80,10 +80,10 @@ impl Equations for Model<'_> {
         self.judge(result, t, y, yp)
     }
 
-    fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> Evaluation {
+    fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> EvaluationStatus {
         if self.system.columns.is_empty() {
             val[0] = cj;
-            return Evaluation::Done;
+            return EvaluationStatus::Done;
         }
         self.playback.follow(t, &mut self.values);
         let result = self.system.jacobian(t, cj, y, yp, &mut self.values, val);

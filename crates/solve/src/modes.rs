@@ -4,9 +4,9 @@
 //! and results would be silently wrong. So the function given to IDA is `d` shifted beyond the threshold, away from the
 //! present side: never zero after a restart, and when IDA reports the root, `d` has really changed its side.
 
-use crate::lower::{Layout, System};
-use bramah_expr::{ExprId, Rel, VarId};
-use bramah_model::structure::{Assign, Block, Crossing, CrossingKind, Dae, Unknown};
+use crate::lower::{ExecutableSystem, ValueLayout};
+use bramah_expr::{ExprId, RelationalOp, VarId};
+use bramah_model::structure::{BltBlock, CrossingKind, Dae, ExplicitAssignment, Unknown, ZeroCrossing};
 use rustc_hash::FxHashSet;
 
 /// Shift of root functions beyond the threshold, in units of the sides' size.
@@ -26,7 +26,7 @@ pub fn same_time(a: f64, b: f64) -> bool {
 
 /// The state of all crossings.
 #[derive(Clone, Debug)]
-pub struct Modes {
+pub struct CrossingModes {
     crossing_of: Vec<u32>,
     slots: Vec<usize>,
     /// A value that a crossing keeps during an event because IDA has seen it cross; NaN for none.
@@ -39,15 +39,15 @@ pub struct Modes {
     pub after: bool,
 }
 
-impl Modes {
+impl CrossingModes {
     /// No crossing forced.
-    pub fn new(system: &System, tolerance: f64) -> Self {
+    pub fn new(system: &ExecutableSystem, tolerance: f64) -> Self {
         let crossings = &system.dae.crossings;
         let mut crossing_of = vec![NONE; system.dae.variables.len()];
         for (c, crossing) in (0..).zip(crossings) {
             crossing_of[crossing.mode.index()] = c;
         }
-        Modes {
+        CrossingModes {
             crossing_of,
             slots: crossings.iter().map(|c| system.layout.var(c.mode)).collect(),
             forced: vec![f64::NAN; crossings.len()],
@@ -65,7 +65,7 @@ impl Modes {
     }
 
     /// Gives a crossing the value it has just crossed to.
-    pub fn force(&mut self, system: &System, crossing: usize, direction: i32, values: &[f64]) {
+    pub fn force(&mut self, system: &ExecutableSystem, crossing: usize, direction: i32, values: &[f64]) {
         let now = values[self.slots[crossing]];
         self.forced[crossing] = match system.dae.crossings[crossing].kind {
             CrossingKind::Floor(_) => now + f64::from(direction.signum()),
@@ -99,12 +99,12 @@ impl Modes {
     }
 
     /// The mode of a crossing given the value its equation has just computed.
-    pub fn correct(&self, system: &System, crossing: u32, computed: f64, values: &[f64]) -> f64 {
+    pub fn correct(&self, system: &ExecutableSystem, crossing: u32, computed: f64, values: &[f64]) -> f64 {
         let c = crossing as usize;
         match system.dae.crossings[c].kind {
             CrossingKind::Time(rel, at) if self.after && computed != f64::from(after(rel)) => {
                 let at = system.eval(at, values);
-                if same_time(values[Layout::TIME], at) { f64::from(after(rel)) } else { computed }
+                if same_time(values[ValueLayout::TIME], at) { f64::from(after(rel)) } else { computed }
             }
             CrossingKind::Relation(_, left, right) if self.wants(c, computed) => {
                 let (left, right) = (system.eval(left, values), system.eval(right, values));
@@ -145,7 +145,7 @@ impl Modes {
 /// Whether a crossing is a function of time that no state follows: no error test sees it, and a long step could hold two
 /// of its roots.
 pub fn follows_time(dae: &Dae) -> bool {
-    let watched = |c: &Crossing| match c.kind {
+    let watched = |c: &ZeroCrossing| match c.kind {
         CrossingKind::Relation(_, left, right) => Some([left, right]),
         CrossingKind::Floor(argument) => Some([argument, argument]),
         CrossingKind::Time(..) => None,
@@ -160,7 +160,7 @@ pub fn follows_time(dae: &Dae) -> bool {
         on.time || on.vars.iter().any(|v| moved.contains(v))
     };
     for block in &dae.continuous {
-        if let Block::Assign(Assign { unknown: Unknown::Var(v), value, .. }) = block
+        if let BltBlock::Assign(ExplicitAssignment { unknown: Unknown::Var(v), value, .. }) = block
             && moves(*value, &moved)
         {
             moved.insert(*v);
@@ -170,8 +170,8 @@ pub fn follows_time(dae: &Dae) -> bool {
 }
 
 /// A time relation just after the time it compares with.
-pub fn after(rel: Rel) -> bool {
-    matches!(rel, Rel::Gt | Rel::Ge | Rel::Ne)
+pub fn after(rel: RelationalOp) -> bool {
+    matches!(rel, RelationalOp::Gt | RelationalOp::Ge | RelationalOp::Ne)
 }
 
 /// The root functions given to IDA: one for each relation, two for each `floor`.
@@ -183,7 +183,7 @@ pub struct RootFunctions {
 
 #[derive(Clone, Copy, Debug)]
 struct RootFunction {
-    /// Index into `System::root_crossings`.
+    /// Index into `ExecutableSystem::root_crossings`.
     raw: usize,
     /// Index into `Dae::crossings`.
     crossing: usize,
@@ -197,7 +197,7 @@ struct RootFunction {
 
 impl RootFunctions {
     /// For all crossings that need them.
-    pub fn new(system: &System) -> Self {
+    pub fn new(system: &ExecutableSystem) -> Self {
         let mut functions = Vec::new();
         for (raw, &crossing) in system.root_crossings.iter().enumerate() {
             let one = RootFunction { raw, crossing, base: 0.0, shift: 0.0, upper: false };
@@ -247,7 +247,7 @@ impl RootFunctions {
     }
 
     /// After a start or event: shifts each function so that it lies on the side its mode says.
-    pub fn settle(&mut self, system: &System, modes: &mut Modes, values: &[f64]) {
+    pub fn settle(&mut self, system: &ExecutableSystem, modes: &mut CrossingModes, values: &[f64]) {
         for f in &mut self.functions {
             let mode = values[modes.slots[f.crossing]];
             let side = match system.dae.crossings[f.crossing].kind {
@@ -267,12 +267,12 @@ impl RootFunctions {
 }
 
 /// The side of zero on which `left - right` lies, given whether the relation holds.
-fn side(rel: Rel, holds: bool, difference: f64) -> f64 {
+fn side(rel: RelationalOp, holds: bool, difference: f64) -> f64 {
     match rel {
-        Rel::Gt | Rel::Ge if holds => 1.0,
-        Rel::Lt | Rel::Le if !holds => 1.0,
-        Rel::Gt | Rel::Ge | Rel::Lt | Rel::Le => -1.0,
-        Rel::Eq | Rel::Ne => {
+        RelationalOp::Gt | RelationalOp::Ge if holds => 1.0,
+        RelationalOp::Lt | RelationalOp::Le if !holds => 1.0,
+        RelationalOp::Gt | RelationalOp::Ge | RelationalOp::Lt | RelationalOp::Le => -1.0,
+        RelationalOp::Eq | RelationalOp::Ne => {
             if difference >= 0.0 {
                 1.0
             } else {
@@ -289,10 +289,10 @@ mod tests {
     #[test]
     fn sides_include_the_threshold_where_the_relation_does() {
         // d = 0: `>=` holds and lies above, `>` does not hold and lies below
-        assert_eq!(side(Rel::Ge, true, 0.0), 1.0);
-        assert_eq!(side(Rel::Gt, false, 0.0), -1.0);
-        assert_eq!(side(Rel::Le, true, 0.0), -1.0);
-        assert_eq!(side(Rel::Lt, false, 0.0), 1.0);
+        assert_eq!(side(RelationalOp::Ge, true, 0.0), 1.0);
+        assert_eq!(side(RelationalOp::Gt, false, 0.0), -1.0);
+        assert_eq!(side(RelationalOp::Le, true, 0.0), -1.0);
+        assert_eq!(side(RelationalOp::Lt, false, 0.0), 1.0);
     }
 
     #[test]

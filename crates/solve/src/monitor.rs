@@ -1,7 +1,7 @@
 //! Watches a run: events that make no progress in time, assertions.
 
 use super::report::at_origin;
-use crate::lower::System;
+use crate::lower::ExecutableSystem;
 use bramah_syntax::diag::{Code, Diagnostic};
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
@@ -13,17 +13,17 @@ const INSTANT: f64 = 1e-9;
 
 /// Recent events, to recognise chattering.
 #[derive(Debug)]
-pub struct Chatter {
+pub struct ChatterMonitor {
     span: f64,
     at_once: usize,
     /// Time and crossing (none for time events) of the last events.
     recent: VecDeque<(f64, Option<u32>)>,
 }
 
-impl Chatter {
+impl ChatterMonitor {
     /// For a run of this length that allows so many events in a billionth of it.
     pub fn new(span: f64, at_once: u32) -> Self {
-        Chatter { span, at_once: at_once.max(1) as usize, recent: VecDeque::new() }
+        ChatterMonitor { span, at_once: at_once.max(1) as usize, recent: VecDeque::new() }
     }
 
     /// Notes an event; true when events make no progress any more.
@@ -43,7 +43,7 @@ impl Chatter {
     }
 
     /// E502, with the relation that crossed most often.
-    pub fn report(&self, system: &System, t: f64) -> Diagnostic {
+    pub fn report(&self, system: &ExecutableSystem, t: f64) -> Diagnostic {
         let dae = &system.dae;
         let mut counts = vec![0_usize; dae.crossings.len()];
         self.recent.iter().filter_map(|e| e.1).for_each(|c| counts[c as usize] += 1);
@@ -83,15 +83,15 @@ const INTERVALS: f64 = 100.0;
 /// Impacts that follow each other faster and faster: at their limit the relation is not seen to change any more, and what it
 /// held back goes through.
 #[derive(Debug, Default)]
-pub struct Accumulation {
+pub struct ImpactAccumulation {
     /// By relation and direction: the last event, the interval before it, and how many intervals have shrunk.
     seen: FxHashMap<(u32, bool), (f64, f64, u32)>,
-    limit: Option<Limit>,
+    limit: Option<AccumulationLimit>,
 }
 
 /// Impacts that have accumulated.
 #[derive(Clone, Copy, Debug)]
-struct Limit {
+struct AccumulationLimit {
     relation: u32,
     /// The last one.
     time: f64,
@@ -101,7 +101,7 @@ struct Limit {
     distance: f64,
 }
 
-impl Accumulation {
+impl ImpactAccumulation {
     /// Notes an event of a relation and its direction; another event begins anew. True where impacts have accumulated.
     pub fn note(&mut self, span: f64, t: f64, crossing: Option<(u32, bool)>) -> bool {
         let Some(key) = crossing else {
@@ -117,7 +117,7 @@ impl Accumulation {
         *seen = (t, if interval > 0.0 { interval } else { f64::INFINITY }, shrunk);
         let accumulated = shrunk >= SHRINKING && interval <= ACCUMULATED * span;
         if accumulated {
-            self.limit = Some(Limit { relation: key.0, time: t, interval, distance: 0.0 });
+            self.limit = Some(AccumulationLimit { relation: key.0, time: t, interval, distance: 0.0 });
         }
         accumulated
     }
@@ -135,7 +135,7 @@ impl Accumulation {
     }
 
     /// E502 where a relation that held back has been passed.
-    pub fn judge(&self, system: &System, t: f64, distance: f64) -> Option<Diagnostic> {
+    pub fn judge(&self, system: &ExecutableSystem, t: f64, distance: f64) -> Option<Diagnostic> {
         let limit = self.limit?;
         if t - limit.time <= INTERVALS * limit.interval || distance.abs() <= APART.max(PASSED * limit.distance) {
             return None;
@@ -155,18 +155,18 @@ impl Accumulation {
 
 /// Which assertions have been reported already.
 #[derive(Debug, Default)]
-pub struct Reported {
+pub struct AssertionReports {
     asserts: Vec<bool>,
     actions: Vec<bool>,
     shared: bool,
     jumped: bool,
 }
 
-impl Reported {
+impl AssertionReports {
     /// None reported yet.
-    pub fn new(system: &System) -> Self {
+    pub fn new(system: &ExecutableSystem) -> Self {
         let (asserts, actions) = (system.dae.asserts.len(), system.dae.actions.len());
-        Reported { asserts: vec![false; asserts], actions: vec![false; actions], shared: false, jumped: false }
+        AssertionReports { asserts: vec![false; asserts], actions: vec![false; actions], shared: false, jumped: false }
     }
 
     /// True the first time an `assert` outside `when` is reported.
@@ -196,20 +196,20 @@ mod tests {
 
     #[test]
     fn many_events_at_once_are_chattering() {
-        let mut chatter = Chatter::new(1.0, 200);
+        let mut chatter = ChatterMonitor::new(1.0, 200);
         assert!((0..199).all(|_| !chatter.note(0.5, None)));
         assert!(chatter.note(0.5, None));
     }
 
     #[test]
     fn a_fast_clock_is_not() {
-        let mut chatter = Chatter::new(10.0, 200);
+        let mut chatter = ChatterMonitor::new(10.0, 200);
         assert!((0..10_000).all(|k| !chatter.note(f64::from(k) * 1e-7, None)));
     }
 
     #[test]
     fn a_relation_that_slides_is() {
-        let mut chatter = Chatter::new(10.0, 200);
+        let mut chatter = ChatterMonitor::new(10.0, 200);
         let first = (0..10_000).find(|&k| chatter.note(f64::from(k) * 1e-7, Some(3)));
         assert_eq!(first, Some(1999));
     }

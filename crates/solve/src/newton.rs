@@ -3,8 +3,8 @@
 //! The damping is that of Deuflhard: a step is accepted when the simplified correction behind it is shorter than the
 //! step itself. It does not depend on how equations are scaled. `min` and `max` only bound how far a step may go.
 
-use super::linear::{Lu, Singular};
-use crate::lower::{LoopCode, System};
+use super::linear::{Lu, SingularMatrix};
+use crate::lower::{ExecutableSystem, LoopCode};
 use bramah_model::structure::Unknown;
 
 /// A correction below this, in units of the unknown's size, ends the iteration.
@@ -22,7 +22,7 @@ const REFINEMENTS: u32 = 3;
 
 /// Sizes and bounds of all variables, by `VarId::index`.
 #[derive(Clone, Debug, Default)]
-pub struct Scales {
+pub struct VariableScales {
     /// Nominal values, positive.
     pub nominal: Vec<f64>,
     /// `min`, or minus infinity.
@@ -31,10 +31,10 @@ pub struct Scales {
     pub max: Vec<f64>,
 }
 
-impl Scales {
+impl VariableScales {
     /// The attributes of all variables with the parameters in `values`.
-    pub fn new(system: &System, values: &[f64]) -> Self {
-        let mut scales = Scales::default();
+    pub fn new(system: &ExecutableSystem, values: &[f64]) -> Self {
+        let mut scales = VariableScales::default();
         for v in (0..).map(bramah_expr::VarId).take(system.dae.variables.len()) {
             scales.nominal.push(system.nominal(v, values));
             scales.min.push(system.min(v, values).filter(|b| b.is_finite()).unwrap_or(f64::NEG_INFINITY));
@@ -53,7 +53,7 @@ impl Scales {
 
 /// Why no solution was found.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Reason {
+pub enum NewtonFailureReason {
     /// The matrix is singular; the unknown without pivot.
     Singular(Unknown),
     /// The equations have no finite value at the first guess.
@@ -66,7 +66,7 @@ pub enum Reason {
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewtonFailure {
     /// Why.
-    pub reason: Reason,
+    pub reason: NewtonFailureReason,
     /// Iterations made.
     pub iterations: u32,
     /// Equations (indices into `Dae::equations`) with their residuals in units that one nominal step of the unknowns
@@ -97,7 +97,7 @@ pub struct Newton {
     searched: bool,
 }
 
-enum Trial {
+enum LineSearchTrial {
     /// Accepted; the length of the simplified correction.
     Accepted(f64),
     /// Not shorter than the step.
@@ -107,7 +107,7 @@ enum Trial {
 
 impl Newton {
     /// Work space for a loop.
-    pub fn new(code: &LoopCode, scales: &Scales) -> Self {
+    pub fn new(code: &LoopCode, scales: &VariableScales) -> Self {
         let n = code.tearing.len();
         let nominal: Vec<f64> = code.tearing.iter().map(|&u| scales.of(u).0).collect();
         Newton {
@@ -149,7 +149,7 @@ impl Newton {
     ///
     /// # Errors
     /// [`NewtonFailure`]; the slots hold the first guess again.
-    pub fn solve(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> Result<(), NewtonFailure> {
+    pub fn solve(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> Result<(), NewtonFailure> {
         for (x, &slot) in self.x.iter_mut().zip(&code.tearing_slots) {
             *x = if values[slot].is_finite() { values[slot] } else { 0.0 };
         }
@@ -169,7 +169,7 @@ impl Newton {
             self.searched = true;
             return Ok(());
         }
-        if failure.reason == Reason::NoConvergence && !code.linear && self.in_parts(code, scales, values) {
+        if failure.reason == NewtonFailureReason::NoConvergence && !code.linear && self.in_parts(code, scales, values) {
             return Ok(());
         }
         if self.may_jump && !code.linear && self.in_full_steps(code, scales, values) {
@@ -184,19 +184,24 @@ impl Newton {
 
     /// One step, and further ones as long as round-off of the first guess is seen: signs of values that are tiny beside
     /// the guess decide about modes.
-    fn linear(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> Result<(), Reason> {
+    fn linear(
+        &mut self,
+        code: &LoopCode,
+        scales: &VariableScales,
+        values: &mut [f64],
+    ) -> Result<(), NewtonFailureReason> {
         self.iterations = 1;
         if !evaluate(code, &self.x, values) {
             self.x.fill(0.0);
             if !evaluate(code, &self.x, values) {
-                return Err(Reason::NonFinite);
+                return Err(NewtonFailureReason::NonFinite);
             }
         }
         self.factor(code, values)?;
         for _ in 0..REFINEMENTS {
             self.correction(code, values);
             if !self.step.iter().all(|v| v.is_finite()) {
-                return Err(Reason::NoConvergence);
+                return Err(NewtonFailureReason::NoConvergence);
             }
             let mut moved = false;
             for (x, dx) in self.x.iter_mut().zip(&self.step) {
@@ -204,7 +209,7 @@ impl Newton {
                 *x += dx;
             }
             if !evaluate(code, &self.x, values) {
-                return Err(Reason::NonFinite);
+                return Err(NewtonFailureReason::NonFinite);
             }
             if !moved {
                 break;
@@ -212,14 +217,19 @@ impl Newton {
         }
         // an equation that is left over and contradicts the others goes on pulling
         if self.lu.keeps() && self.length(code, scales, &self.step) > TOLERANCE {
-            return Err(Reason::NoConvergence);
+            return Err(NewtonFailureReason::NoConvergence);
         }
         Ok(())
     }
 
-    fn iterate(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> Result<(), Reason> {
+    fn iterate(
+        &mut self,
+        code: &LoopCode,
+        scales: &VariableScales,
+        values: &mut [f64],
+    ) -> Result<(), NewtonFailureReason> {
         if !evaluate(code, &self.x, values) {
-            return Err(Reason::NonFinite);
+            return Err(NewtonFailureReason::NonFinite);
         }
         let mut damping = 1.0_f64;
         let mut last = f64::INFINITY;
@@ -229,7 +239,7 @@ impl Newton {
             self.correction(code, values);
             let length = self.length(code, scales, &self.step);
             if !length.is_finite() {
-                return Err(Reason::NoConvergence);
+                return Err(NewtonFailureReason::NoConvergence);
             }
             if length <= TOLERANCE || (length <= ROUND_OFF && length > 0.5 * last) {
                 return self.finish(code, values);
@@ -243,11 +253,11 @@ impl Newton {
             }
             damping = (2.0 * accepted).min(1.0);
         }
-        Err(Reason::NoConvergence)
+        Err(NewtonFailureReason::NoConvergence)
     }
 
     /// The last, tiny step.
-    fn finish(&mut self, code: &LoopCode, values: &mut [f64]) -> Result<(), Reason> {
+    fn finish(&mut self, code: &LoopCode, values: &mut [f64]) -> Result<(), NewtonFailureReason> {
         for ((t, x), dx) in self.trial.iter_mut().zip(&self.x).zip(&self.step) {
             *t = x + dx;
         }
@@ -263,48 +273,61 @@ impl Newton {
     fn damp(
         &mut self,
         code: &LoopCode,
-        scales: &Scales,
+        scales: &VariableScales,
         values: &mut [f64],
         first: f64,
         length: f64,
-    ) -> Result<(f64, f64), Reason> {
+    ) -> Result<(f64, f64), NewtonFailureReason> {
         let mut damping = first;
         loop {
             match self.attempt(code, scales, values, damping, length) {
-                Trial::Accepted(ahead) => return Ok((damping, ahead)),
-                Trial::Longer if length <= ROUND_OFF => return Ok((damping, 0.0)),
-                Trial::Longer => damping *= 0.5,
-                Trial::NonFinite => damping *= 0.25,
+                LineSearchTrial::Accepted(ahead) => return Ok((damping, ahead)),
+                LineSearchTrial::Longer if length <= ROUND_OFF => return Ok((damping, 0.0)),
+                LineSearchTrial::Longer => damping *= 0.5,
+                LineSearchTrial::NonFinite => damping *= 0.25,
             }
             if damping < SMALLEST_DAMPING {
-                return Err(Reason::NoConvergence);
+                return Err(NewtonFailureReason::NoConvergence);
             }
         }
     }
 
-    fn attempt(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64], damping: f64, length: f64) -> Trial {
+    fn attempt(
+        &mut self,
+        code: &LoopCode,
+        scales: &VariableScales,
+        values: &mut [f64],
+        damping: f64,
+        length: f64,
+    ) -> LineSearchTrial {
         for ((t, x), dx) in self.trial.iter_mut().zip(&self.x).zip(&self.step) {
             *t = x + damping * dx;
         }
         if !evaluate(code, &self.trial, values) {
-            return Trial::NonFinite;
+            return LineSearchTrial::NonFinite;
         }
         for ((b, &slot), rest) in self.next.iter_mut().zip(&code.residual_slots).zip(&self.rest) {
             *b = rest - values[slot];
         }
         if !self.lu.solve(&mut self.next) {
-            return Trial::NonFinite;
+            return LineSearchTrial::NonFinite;
         }
         let ahead = self.length(code, scales, &self.next);
-        if ahead <= (1.0 - 0.25 * damping) * length { Trial::Accepted(ahead) } else { Trial::Longer }
+        if ahead <= (1.0 - 0.25 * damping) * length {
+            LineSearchTrial::Accepted(ahead)
+        } else {
+            LineSearchTrial::Longer
+        }
     }
 
-    fn factor(&mut self, code: &LoopCode, values: &mut [f64]) -> Result<(), Reason> {
+    fn factor(&mut self, code: &LoopCode, values: &mut [f64]) -> Result<(), NewtonFailureReason> {
         code.jacobian.run(values);
         for (m, &slot) in self.matrix.iter_mut().zip(&code.jacobian_slots) {
             *m = values[slot];
         }
-        self.lu.factor(&self.matrix).map_err(|Singular { column }| Reason::Singular(code.tearing[column]))
+        self.lu
+            .factor(&self.matrix)
+            .map_err(|SingularMatrix { column }| NewtonFailureReason::Singular(code.tearing[column]))
     }
 
     /// The Newton correction into `step`.
@@ -316,13 +339,13 @@ impl Newton {
     }
 
     /// The largest entry of a correction in units of its unknown's size.
-    fn length(&self, code: &LoopCode, scales: &Scales, step: &[f64]) -> f64 {
+    fn length(&self, code: &LoopCode, scales: &VariableScales, step: &[f64]) -> f64 {
         let sizes = code.tearing.iter().zip(&self.x).map(|(&u, x)| x.abs().max(scales.of(u).0));
         step.iter().zip(sizes).fold(0.0, |m, (dx, size)| if dx.is_nan() { f64::NAN } else { (dx.abs() / size).max(m) })
     }
 
     /// The part of the step that keeps unknowns between `min` and `max`, but never less than a tenth.
-    fn bound(&self, code: &LoopCode, scales: &Scales) -> f64 {
+    fn bound(&self, code: &LoopCode, scales: &VariableScales) -> f64 {
         let mut part = 1.0_f64;
         for ((&u, x), dx) in code.tearing.iter().zip(&self.x).zip(&self.step) {
             let (_, min, max) = scales.of(u);
@@ -337,7 +360,7 @@ impl Newton {
     /// Newton's homotopy: the residuals of the guess are taken away in parts, each solved from where the part before has
     /// led. A flow over the root of a pressure drop is flat far from its zero, and Newton's method is thrown from one
     /// side of it to the other; in parts it follows.
-    fn in_parts(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+    fn in_parts(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         let mut reached = self.guess.clone();
         if !evaluate(code, &reached, values) {
             return false;
@@ -364,7 +387,7 @@ impl Newton {
     /// Newton's method without damping, from the guess and from either side far from it. Where two roots have met and
     /// vanished, as when a snap-through or a comparator with positive feedback lets go, damped steps end at the place where
     /// they met.
-    fn in_full_steps(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+    fn in_full_steps(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         [0.0, 1.0, -1.0, 10.0, -10.0].into_iter().any(|far| {
             for ((x, guess), &u) in self.x.iter_mut().zip(&self.guess).zip(&code.tearing) {
                 *x = guess + far * guess.abs().max(scales.of(u).0);
@@ -373,7 +396,7 @@ impl Newton {
         })
     }
 
-    fn full_steps(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+    fn full_steps(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         for _ in 0..MAX_ITERATIONS {
             if !evaluate(code, &self.x, values) || self.factor(code, values).is_err() {
                 return false;
@@ -390,7 +413,7 @@ impl Newton {
 
     /// Whether the guess solves one equation whose derivative vanishes there, as `x^2 + y^2 = 1` at `x = 1`: a root all the same
     /// where values on both sides differ from 0. Values are those of the guess afterwards.
-    fn is_double_root(&self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+    fn is_double_root(&self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         let guess = self.guess[0];
         let aside = ASIDE * guess.abs().max(scales.of(code.tearing[0]).0);
         let mut at =
@@ -401,7 +424,7 @@ impl Newton {
     }
 
     /// A search for a root around the guess, for one equation.
-    fn bracket(&mut self, code: &LoopCode, scales: &Scales, values: &mut [f64]) -> bool {
+    fn bracket(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         let (nominal, min, max) = scales.of(code.tearing[0]);
         let mut at = |x: f64| {
             evaluate(code, &[x], values);
@@ -412,7 +435,13 @@ impl Newton {
         at(x).is_finite()
     }
 
-    fn failure(&self, code: &LoopCode, scales: &Scales, values: &mut [f64], reason: Reason) -> NewtonFailure {
+    fn failure(
+        &self,
+        code: &LoopCode,
+        scales: &VariableScales,
+        values: &mut [f64],
+        reason: NewtonFailureReason,
+    ) -> NewtonFailure {
         evaluate(code, &self.x, values);
         let weights = self.row_sizes(code, scales);
         let scaled = |i: usize| values[code.residual_slots[i]] / weights[i];
@@ -427,7 +456,7 @@ impl Newton {
     }
 
     /// What a nominal change of the unknowns does to each residual.
-    fn row_sizes(&self, code: &LoopCode, scales: &Scales) -> Vec<f64> {
+    fn row_sizes(&self, code: &LoopCode, scales: &VariableScales) -> Vec<f64> {
         let mut sizes = vec![0.0_f64; code.residuals.len()];
         for j in 0..code.pattern.n {
             let nominal = scales.of(code.tearing[j]).0;

@@ -3,14 +3,14 @@
 use super::checkpoint::Checkpoint;
 use super::modes::same_time;
 use bramah_expr::VarId;
-use bramah_model::flat::Type;
+use bramah_model::flat::ScalarType;
 use bramah_model::structure::Dae;
 use bramah_results::{Kind, Signal, Trajectory};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
 /// Takes the rows of a run in the order of time. Rows of equal time are an event: before and after it.
-pub trait Sink: Send {
+pub trait RowSink: Send {
     /// A row; the values are in the order of `Settings::wanted`. `Break` ends the run as interrupted.
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()>;
 
@@ -26,7 +26,7 @@ pub trait Sink: Send {
     }
 }
 
-impl Sink for Trajectory {
+impl RowSink for Trajectory {
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
         self.push(time, values);
         ControlFlow::Continue(())
@@ -49,12 +49,12 @@ pub fn signals(dae: &Dae, wanted: &[VarId]) -> Vec<Signal> {
     wanted.iter().map(signal).collect()
 }
 
-fn kind(dae: &Dae, ty: Type) -> Kind {
+fn kind(dae: &Dae, ty: ScalarType) -> Kind {
     match ty {
-        Type::Real => Kind::Real,
-        Type::Integer => Kind::Integer,
-        Type::Boolean => Kind::Boolean,
-        Type::Enumeration(e) => {
+        ScalarType::Real => Kind::Real,
+        ScalarType::Integer => Kind::Integer,
+        ScalarType::Boolean => Kind::Boolean,
+        ScalarType::Enumeration(e) => {
             Kind::Enumeration(dae.enumerations.get(e as usize).map_or_else(Vec::new, |e| e.1.clone()))
         }
     }
@@ -62,13 +62,13 @@ fn kind(dae: &Dae, ty: Type) -> Kind {
 
 /// Output times `start + k interval` and the stop time; nothing accumulates.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid {
+pub struct OutputGrid {
     start: f64,
     stop: f64,
     interval: f64,
     /// Start and interval as whole numbers of this part of a second, where they are decimal numbers: then the k-th time
     /// is the number nearest to its decimal notation, 0.3 and not 0.30000000000000004.
-    decimal: Option<Decimal>,
+    decimal: Option<DecimalGrid>,
     next: u64,
     /// Events since the last row of the grid, how many of an interval have rows, and whether some had none.
     events: u64,
@@ -77,18 +77,18 @@ pub struct Grid {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Decimal {
+struct DecimalGrid {
     start: f64,
     interval: f64,
     parts: f64,
 }
 
-impl Decimal {
+impl DecimalGrid {
     fn new(start: f64, interval: f64) -> Option<Self> {
         let whole = |x: f64| (x.abs() < 1e12 && (x - x.round()).abs() <= 1e-12 * x.abs()).then(|| x.round());
         [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9].into_iter().find_map(|parts| {
             let (start, interval) = (whole(start * parts)?, whole(interval * parts)?);
-            (interval > 0.0).then_some(Decimal { start, interval, parts })
+            (interval > 0.0).then_some(DecimalGrid { start, interval, parts })
         })
     }
 
@@ -97,12 +97,12 @@ impl Decimal {
     }
 }
 
-impl Grid {
+impl OutputGrid {
     /// Standing at the first row.
     pub fn new(start: f64, stop: f64, interval: f64) -> Self {
         let interval = if interval > 0.0 { interval } else { f64::INFINITY };
-        let decimal = Decimal::new(start, interval);
-        Grid { start, stop, interval, decimal, next: 0, events: 0, recorded: u64::MAX, thinned: false }
+        let decimal = DecimalGrid::new(start, interval);
+        OutputGrid { start, stop, interval, decimal, next: 0, events: 0, recorded: u64::MAX, thinned: false }
     }
 
     /// With so many event rows in all at most, in equal parts for each interval of the grid.
@@ -127,7 +127,7 @@ impl Grid {
 
     /// Standing behind some rows.
     pub fn after(start: f64, stop: f64, interval: f64, rows: u64) -> Self {
-        Grid { next: rows, ..Grid::new(start, stop, interval) }
+        OutputGrid { next: rows, ..OutputGrid::new(start, stop, interval) }
     }
 
     /// How many rows of the grid are out.
@@ -168,7 +168,7 @@ impl Grid {
 mod tests {
     use super::*;
 
-    fn times(mut grid: Grid) -> Vec<f64> {
+    fn times(mut grid: OutputGrid) -> Vec<f64> {
         let mut times = vec![];
         while grid.next().is_finite() {
             times.push(grid.next());
@@ -179,7 +179,7 @@ mod tests {
 
     #[test]
     fn of_each_interval_the_first_events_have_rows() {
-        let mut grid = Grid::new(0.0, 1.0, 0.5).with_event_rows(8);
+        let mut grid = OutputGrid::new(0.0, 1.0, 0.5).with_event_rows(8);
         grid.pass(0.0);
         let mut recorded = |times: &[f64]| {
             let mut one = |&t: &f64| {
@@ -192,17 +192,17 @@ mod tests {
         assert_eq!(recorded(&[0.1, 0.2, 0.3, 0.4]), 2);
         assert_eq!(recorded(&[0.5, 0.6, 0.7]), 2);
         assert_eq!(grid.thinned(), Some(2));
-        assert_eq!(Grid::new(0.0, 1.0, 0.0).with_event_rows(100).recorded, 50);
+        assert_eq!(OutputGrid::new(0.0, 1.0, 0.0).with_event_rows(100).recorded, 50);
     }
 
     #[test]
     fn the_last_row_is_the_stop_time() {
-        assert_eq!(times(Grid::new(0.0, 0.3, 0.1)), [0.0, 0.1, 0.2, 0.3]);
-        assert_eq!(times(Grid::new(1.0, 1.25, 0.1)), [1.0, 1.1, 1.2, 1.25]);
-        assert_eq!(times(Grid::new(0.0, 2.0, 0.0)), [0.0, 2.0]);
-        assert_eq!(times(Grid::new(0.0, 20.0, 0.01)).len(), 2001);
-        assert_eq!(times(Grid::new(0.5, 1.3, 0.2)), [0.5, 0.7, 0.9, 1.1, 1.3]);
-        assert_eq!(times(Grid::new(0.0, 1.0, 0.15)), [0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0]);
-        assert_eq!(times(Grid::new(0.0, 1.0, 1.0 / 3.0)).len(), 4);
+        assert_eq!(times(OutputGrid::new(0.0, 0.3, 0.1)), [0.0, 0.1, 0.2, 0.3]);
+        assert_eq!(times(OutputGrid::new(1.0, 1.25, 0.1)), [1.0, 1.1, 1.2, 1.25]);
+        assert_eq!(times(OutputGrid::new(0.0, 2.0, 0.0)), [0.0, 2.0]);
+        assert_eq!(times(OutputGrid::new(0.0, 20.0, 0.01)).len(), 2001);
+        assert_eq!(times(OutputGrid::new(0.5, 1.3, 0.2)), [0.5, 0.7, 0.9, 1.1, 1.3]);
+        assert_eq!(times(OutputGrid::new(0.0, 1.0, 0.15)), [0.0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1.0]);
+        assert_eq!(times(OutputGrid::new(0.0, 1.0, 1.0 / 3.0)).len(), 4);
     }
 }

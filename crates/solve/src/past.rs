@@ -7,7 +7,7 @@
 //! D. R. Wille, Adv. Comput. Math. 3 (1995) 171.
 
 use super::modes::same_time;
-use crate::lower::System;
+use crate::lower::ExecutableSystem;
 use bramah_expr::ExprId;
 use std::collections::VecDeque;
 use std::f64::consts::PI;
@@ -21,7 +21,7 @@ const PASSAGES: u32 = 5;
 
 /// A part of a step.
 #[derive(Clone, Debug, PartialEq)]
-struct Piece {
+struct HistoryPiece {
     from: f64,
     to: f64,
     /// Per delay, at the times of [`points`].
@@ -30,9 +30,9 @@ struct Piece {
 
 /// A stretch of the past in which nothing jumps or bends, never empty.
 #[derive(Clone, Debug, PartialEq)]
-struct Stretch {
+struct HistoryStretch {
     since: f64,
-    pieces: VecDeque<Piece>,
+    pieces: VecDeque<HistoryPiece>,
     /// How often the bend at its beginning has passed a delay.
     passages: u32,
     /// Per delay, whether its expression jumps at the beginning.
@@ -41,12 +41,12 @@ struct Stretch {
 
 /// What a run has recorded for its delays; a part of its state.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Past {
-    stretches: VecDeque<Stretch>,
+pub struct DelayHistory {
+    stretches: VecDeque<HistoryStretch>,
 }
 
 #[derive(Clone, Debug)]
-struct Track {
+struct DelayTrack {
     slot: usize,
     source: ExprId,
     time: f64,
@@ -58,9 +58,9 @@ struct Track {
 
 /// All delays of a run.
 #[derive(Clone, Debug, Default)]
-pub struct Delays {
-    tracks: Vec<Track>,
-    past: Past,
+pub struct DelayBuffers {
+    tracks: Vec<DelayTrack>,
+    past: DelayHistory,
     longest: f64,
 }
 
@@ -73,10 +73,10 @@ pub fn points(from: f64, to: f64) -> [f64; POINTS] {
     times.try_into().expect("five")
 }
 
-impl Piece {
+impl HistoryPiece {
     /// One value for all time.
-    fn point(t: f64, values: &[f64]) -> Piece {
-        Piece { from: t, to: t, values: values.iter().map(|&v| [v; POINTS]).collect() }
+    fn point(t: f64, values: &[f64]) -> HistoryPiece {
+        HistoryPiece { from: t, to: t, values: values.iter().map(|&v| [v; POINTS]).collect() }
     }
 
     /// The polynomial through the values, in barycentric form; the weights of these points are alternating, half at the
@@ -100,25 +100,25 @@ impl Piece {
     }
 }
 
-impl Stretch {
+impl HistoryStretch {
     fn value(&self, delay: usize, t: f64) -> f64 {
         let i = self.pieces.partition_point(|p| p.to < t).min(self.pieces.len() - 1);
         self.pieces[i].value(delay, t)
     }
 }
 
-impl Delays {
+impl DelayBuffers {
     /// For the delays of a system, whose parameters are known. None where a time is not positive: which one, and its value.
-    pub fn new(system: &System, values: &[f64], past: Past) -> Result<Delays, (usize, f64)> {
-        let track = |(i, delay): (usize, &bramah_model::structure::Delay)| {
+    pub fn new(system: &ExecutableSystem, values: &[f64], past: DelayHistory) -> Result<DelayBuffers, (usize, f64)> {
+        let track = |(i, delay): (usize, &bramah_model::structure::DelayInput)| {
             let time = system.eval(delay.time, values);
             let slot = system.layout.var(delay.variable);
-            let track = Track { slot, source: delay.source, time, at: 0, size: 0.0 };
+            let track = DelayTrack { slot, source: delay.source, time, at: 0, size: 0.0 };
             if time.is_finite() && time > 0.0 { Ok(track) } else { Err((i, time)) }
         };
-        let tracks: Vec<Track> = system.dae.delays.iter().enumerate().map(track).collect::<Result<_, _>>()?;
+        let tracks: Vec<DelayTrack> = system.dae.delays.iter().enumerate().map(track).collect::<Result<_, _>>()?;
         let longest = tracks.iter().map(|t| t.time).fold(0.0, f64::max);
-        Ok(Delays { tracks, past, longest })
+        Ok(DelayBuffers { tracks, past, longest })
     }
 
     /// True without delays.
@@ -132,7 +132,7 @@ impl Delays {
     }
 
     /// What is recorded.
-    pub fn past(&self) -> &Past {
+    pub fn past(&self) -> &DelayHistory {
         &self.past
     }
 
@@ -142,12 +142,12 @@ impl Delays {
     }
 
     /// The delayed expressions from the slots as they are.
-    pub fn sources(&self, system: &System, values: &[f64]) -> Vec<f64> {
+    pub fn sources(&self, system: &ExecutableSystem, values: &[f64]) -> Vec<f64> {
         self.tracks.iter().map(|track| system.eval(track.source, values)).collect()
     }
 
     /// At the start every delayed value is the value itself, unless there is a past already. True when that changed one.
-    pub fn start(&mut self, system: &System, t: f64, values: &mut [f64]) -> bool {
+    pub fn start(&mut self, system: &ExecutableSystem, t: f64, values: &mut [f64]) -> bool {
         let mut changed = false;
         let mut sources = Vec::new();
         for track in &mut self.tracks {
@@ -166,8 +166,8 @@ impl Delays {
     }
 
     fn open(&mut self, t: f64, values: &[f64], passages: u32, jumps: Vec<bool>) {
-        let pieces = VecDeque::from([Piece::point(t, values)]);
-        self.past.stretches.push_back(Stretch { since: t, pieces, passages, jumps });
+        let pieces = VecDeque::from([HistoryPiece::point(t, values)]);
+        self.past.stretches.push_back(HistoryStretch { since: t, pieces, passages, jumps });
     }
 
     /// What came to be between two times, at [`points`].
@@ -178,7 +178,7 @@ impl Delays {
             track.size = values.iter().fold(track.size, |size, v| size.max(v.abs()));
         }
         if let Some(last) = self.past.stretches.back_mut() {
-            last.pieces.push_back(Piece { from, to, values });
+            last.pieces.push_back(HistoryPiece { from, to, values });
         }
         self.forget(to - self.longest);
     }
@@ -199,7 +199,7 @@ impl Delays {
 
     /// An event at `t` that took the delayed expressions from some values to others. Jumps below the tolerance are none.
     pub fn event(&mut self, t: f64, before: &[f64], after: &[f64], tolerance: f64) {
-        let jumps = |((track, a), b): ((&Track, &f64), &f64)| (a - b).abs() > tolerance * track.size.max(b.abs());
+        let jumps = |((track, a), b): ((&DelayTrack, &f64), &f64)| (a - b).abs() > tolerance * track.size.max(b.abs());
         let jumps = self.tracks.iter().zip(before).zip(after).map(jumps).collect();
         self.open(t, after, 0, jumps);
     }
@@ -208,7 +208,7 @@ impl Delays {
     pub fn seek(&mut self, t: f64, values: &mut [f64]) {
         let stretches = &self.past.stretches;
         for track in &mut self.tracks {
-            let begun = |s: &Stretch| s.since + track.time <= t || same_time(s.since + track.time, t);
+            let begun = |s: &HistoryStretch| s.since + track.time <= t || same_time(s.since + track.time, t);
             track.at = stretches.partition_point(begun).saturating_sub(1);
         }
         self.follow(t, values);
@@ -244,7 +244,7 @@ impl Delays {
     /// A bend has been passed at `t`: what reads it bends one derivative later.
     pub fn pass(&mut self, t: f64, sources: &[f64]) {
         let passed = self.tracks.iter().filter_map(|track| {
-            let here = |s: &&Stretch| same_time(s.since + track.time, t);
+            let here = |s: &&HistoryStretch| same_time(s.since + track.time, t);
             self.past.stretches.iter().find(here).map(|s| s.passages)
         });
         let Some(passages) = passed.min().filter(|p| p + 1 < PASSAGES) else { return };
@@ -252,7 +252,7 @@ impl Delays {
     }
 }
 
-impl Past {
+impl DelayHistory {
     /// Numbers that hold everything, for checkpoints.
     pub fn numbers(&self) -> Vec<f64> {
         let mut out = Vec::new();
@@ -270,9 +270,9 @@ impl Past {
     }
 
     /// From these numbers; `None` where they are no record.
-    pub fn from_numbers(numbers: &[f64]) -> Option<Past> {
+    pub fn from_numbers(numbers: &[f64]) -> Option<DelayHistory> {
         let mut rest = numbers.iter().copied();
-        let mut record = Past::default();
+        let mut record = DelayHistory::default();
         while let Some(count) = rest.next() {
             let (since, passages, delays) = (rest.next()?, rest.next()? as u32, rest.next()? as usize);
             let jumps = (0..delays).map(|_| rest.next().map(|j| j != 0.0)).collect::<Option<_>>()?;
@@ -284,11 +284,11 @@ impl Past {
                     Some(values)
                 };
                 let values = (0..delays).map(|_| trajectory()).collect::<Option<_>>()?;
-                Some(Piece { from, to, values })
+                Some(HistoryPiece { from, to, values })
             };
-            let pieces: VecDeque<Piece> = (0..count as usize).map(|_| piece()).collect::<Option<_>>()?;
+            let pieces: VecDeque<HistoryPiece> = (0..count as usize).map(|_| piece()).collect::<Option<_>>()?;
             (!pieces.is_empty()).then_some(())?;
-            record.stretches.push_back(Stretch { since, pieces, passages, jumps });
+            record.stretches.push_back(HistoryStretch { since, pieces, passages, jumps });
         }
         Some(record)
     }
@@ -306,7 +306,7 @@ mod tests {
     #[test]
     fn a_piece_is_a_polynomial_of_fourth_degree() {
         let law = |t: f64| 1.0 - 2.0 * t + t.powi(4);
-        let piece = Piece { from: 0.5, to: 2.0, values: vec![points(0.5, 2.0).map(law)] };
+        let piece = HistoryPiece { from: 0.5, to: 2.0, values: vec![points(0.5, 2.0).map(law)] };
         for t in [0.5, 0.6, 1.25, 1.9, 2.0] {
             assert!((piece.value(0, t) - law(t)).abs() < 1e-13, "{t}");
         }
@@ -315,16 +315,17 @@ mod tests {
 
     #[test]
     fn records_become_numbers_and_come_back() {
-        let piece = Piece { from: 0.5, to: 2.0, values: vec![[1.0, 2.0, 3.0, 4.0, -0.0], [0.1; POINTS]] };
-        let first = Stretch {
+        let piece = HistoryPiece { from: 0.5, to: 2.0, values: vec![[1.0, 2.0, 3.0, 4.0, -0.0], [0.1; POINTS]] };
+        let first = HistoryStretch {
             since: 0.25,
             pieces: VecDeque::from([piece.clone(), piece.clone()]),
             passages: 3,
             jumps: vec![true, false],
         };
-        let second = Stretch { since: 0.5, pieces: VecDeque::from([piece]), passages: 0, jumps: vec![false, false] };
-        let record = Past { stretches: VecDeque::from([first, second]) };
-        assert_eq!(Past::from_numbers(&record.numbers()), Some(record.clone()));
-        assert_eq!(Past::from_numbers(&record.numbers()[..20]), None);
+        let second =
+            HistoryStretch { since: 0.5, pieces: VecDeque::from([piece]), passages: 0, jumps: vec![false, false] };
+        let record = DelayHistory { stretches: VecDeque::from([first, second]) };
+        assert_eq!(DelayHistory::from_numbers(&record.numbers()), Some(record.clone()));
+        assert_eq!(DelayHistory::from_numbers(&record.numbers()[..20]), None);
     }
 }

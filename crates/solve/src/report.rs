@@ -1,12 +1,12 @@
 //! What a run says when it fails: which variable of which component, which equation, and what to do.
 
 use super::blocks::BlockFailure;
-use super::continuity::Jump;
-use super::newton::{NewtonFailure, Reason};
-use crate::lower::{System, Trap};
-use bramah_expr::{ExprId, Node, VarId};
-use bramah_model::flat::{Equation, Message, MessagePart, Origin, Type};
-use bramah_model::structure::{Block, Dae, Loop, Unknown, places};
+use super::continuity::VariableJump;
+use super::newton::{NewtonFailure, NewtonFailureReason};
+use crate::lower::{ExecutableSystem, NonFiniteTrap};
+use bramah_expr::{ExprId, ExprNode, VarId};
+use bramah_model::flat::{ElementOrigin, FlatEquation, MessagePart, MessageTemplate, ScalarType};
+use bramah_model::structure::{AlgebraicLoop, BltBlock, Dae, Unknown, places};
 use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Rows of a table in a message at most.
@@ -21,13 +21,13 @@ pub fn name(dae: &Dae, unknown: Unknown) -> String {
 }
 
 /// The component that an origin stands in, by full name and class; the model itself has no name.
-fn component(dae: &Dae, origin: Origin) -> Option<(&str, &str)> {
+fn component(dae: &Dae, origin: ElementOrigin) -> Option<(&str, &str)> {
     let instance = dae.instances.get(origin.instance as usize)?;
     (!instance.name.is_empty()).then_some((instance.name.as_str(), instance.class.as_str()))
 }
 
 /// A diagnostic at a place of the model, with the component named.
-pub fn at_origin(dae: &Dae, code: Code, text: impl Into<String>, origin: Origin, label: &str) -> Diagnostic {
+pub fn at_origin(dae: &Dae, code: Code, text: impl Into<String>, origin: ElementOrigin, label: &str) -> Diagnostic {
     let diagnostic = Diagnostic::new(code, text).at(origin.span, label);
     match component(dae, origin) {
         Some((instance, class)) => diagnostic.instance(instance).class(class),
@@ -36,7 +36,7 @@ pub fn at_origin(dae: &Dae, code: Code, text: impl Into<String>, origin: Origin,
 }
 
 /// A text with values, as `String(..)` prints them.
-pub fn message_text(system: &System, message: &Message, values: &[f64]) -> String {
+pub fn message_text(system: &ExecutableSystem, message: &MessageTemplate, values: &[f64]) -> String {
     let mut text = String::new();
     for part in &message.parts {
         match part {
@@ -47,12 +47,12 @@ pub fn message_text(system: &System, message: &Message, values: &[f64]) -> Strin
     text
 }
 
-fn value_text(dae: &Dae, value: f64, ty: Type) -> String {
+fn value_text(dae: &Dae, value: f64, ty: ScalarType) -> String {
     match ty {
-        Type::Real => number(value),
-        Type::Integer => format!("{value:.0}"),
-        Type::Boolean => (value != 0.0).to_string(),
-        Type::Enumeration(e) => {
+        ScalarType::Real => number(value),
+        ScalarType::Integer => format!("{value:.0}"),
+        ScalarType::Boolean => (value != 0.0).to_string(),
+        ScalarType::Enumeration(e) => {
             let literals = dae.enumerations.get(e as usize).map(|e| &e.1);
             let index = (value as usize).wrapping_sub(1);
             literals.and_then(|l| l.get(index)).cloned().unwrap_or_else(|| number(value))
@@ -91,16 +91,16 @@ fn table(heading: [&str; 3], rows: impl Iterator<Item = [String; 3]>) -> String 
 
 /// The first operation without a finite value in the model's equations, in the order of their evaluation, with the
 /// index of its equation.
-pub fn find_trap(system: &System, values: &[f64]) -> Option<(Trap, u32)> {
+pub fn find_trap(system: &ExecutableSystem, values: &[f64]) -> Option<(NonFiniteTrap, u32)> {
     let found = |e: ExprId, equation: u32| system.trap(e, values).map(|trap| (trap, equation));
     for block in &system.dae.continuous {
         let trap = match block {
-            Block::Assign(a) => found(a.value, a.equation),
-            Block::Loop(l) => {
+            BltBlock::Assign(a) => found(a.value, a.equation),
+            BltBlock::Loop(l) => {
                 let inner = l.inner.iter().map(|a| (a.value, a.equation));
                 inner.chain(l.residuals.iter().copied()).find_map(|(e, equation)| found(e, equation))
             }
-            Block::Mixed(_) => None,
+            BltBlock::Mixed(_) => None,
         };
         if trap.is_some() {
             return trap;
@@ -110,18 +110,18 @@ pub fn find_trap(system: &System, values: &[f64]) -> Option<(Trap, u32)> {
 }
 
 /// What functions outside the equations say of calls that gave no number.
-pub fn troubles(system: &System) -> Vec<String> {
+pub fn troubles(system: &ExecutableSystem) -> Vec<String> {
     let mut troubles: Vec<String> = system.dae.exprs.functions.iter().filter_map(|f| f.external()?.failure()).collect();
     troubles.dedup();
     troubles
 }
 
 /// E504: a value is not finite.
-pub fn non_finite(system: &System, t: f64, trap: Option<(Trap, u32)>) -> Diagnostic {
+pub fn non_finite(system: &ExecutableSystem, t: f64, trap: Option<(NonFiniteTrap, u32)>) -> Diagnostic {
     let Some((trap, equation)) = trap else {
         return Diagnostic::new(Code::NonFinite, format!("a value is not finite at time {} s", number(t)));
     };
-    let Trap { operation, written, value, trouble } = trap;
+    let NonFiniteTrap { operation, written, value, trouble } = trap;
     let text = match &trouble {
         Some(trouble) => format!("{trouble} (at time {} s)", number(t)),
         None => format!("`{written}` is not finite at time {} s: {operation} = {value}", number(t)),
@@ -139,7 +139,7 @@ pub fn non_finite(system: &System, t: f64, trap: Option<(Trap, u32)>) -> Diagnos
 }
 
 /// E504: an equation has no slope there.
-pub fn infinite_derivative(system: &System, t: f64, row: usize, column: usize) -> Diagnostic {
+pub fn infinite_derivative(system: &ExecutableSystem, t: f64, row: usize, column: usize) -> Diagnostic {
     let v = name(&system.dae, Unknown::Var(system.columns[column].variable));
     let text = match troubles(system).pop() {
         Some(trouble) => format!("{trouble} (at time {} s)", number(t)),
@@ -151,7 +151,7 @@ pub fn infinite_derivative(system: &System, t: f64, row: usize, column: usize) -
 }
 
 /// E509: what is differentiated jumps.
-pub fn jump(system: &System, t: f64, jump: &Jump) -> Diagnostic {
+pub fn jump(system: &ExecutableSystem, t: f64, jump: &VariableJump) -> Diagnostic {
     let variable = &system.dae.variables[jump.variable.index()];
     let unit = variable.unit.as_deref().filter(|u| *u != "1").map_or_else(String::new, |u| format!(" {u}"));
     let (from, to) = (number(jump.before), number(jump.after));
@@ -170,12 +170,18 @@ pub fn jump(system: &System, t: f64, jump: &Jump) -> Diagnostic {
 }
 
 /// What happened in a block, as a diagnostic of the given code; `when` says when, as in `at the start`.
-pub fn block_failure(system: &System, code: Code, failure: &BlockFailure, values: &[f64], when: &str) -> Diagnostic {
+pub fn block_failure(
+    system: &ExecutableSystem,
+    code: Code,
+    failure: &BlockFailure,
+    values: &[f64],
+    when: &str,
+) -> Diagnostic {
     match failure {
         BlockFailure::Loop(failure) => loop_failure(system, code, failure, values, when),
         BlockFailure::NonFinite(target) => {
             let trap = system.trap(target.value, values).map(|trap| (trap, target.equation));
-            let t = values[crate::lower::Layout::TIME];
+            let t = values[crate::lower::ValueLayout::TIME];
             match trap {
                 Some(trap) => non_finite(system, t, Some(trap)),
                 None => {
@@ -196,15 +202,21 @@ fn equation_diagnostic(dae: &Dae, code: Code, text: String, equation: u32) -> Di
     }
 }
 
-fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[f64], when: &str) -> Diagnostic {
+fn loop_failure(
+    system: &ExecutableSystem,
+    code: Code,
+    failure: &NewtonFailure,
+    values: &[f64],
+    when: &str,
+) -> Diagnostic {
     let equation = failure.residuals.first().map(|r| r.0).or_else(|| failure.non_finite.first().copied());
     if let Some(reported) = equation.and_then(|e| no_pressure_level(&system.dae, loop_of(&system.dae, e)?)) {
         return reported;
     }
-    if let (Reason::NonFinite, Some(&equation)) = (&failure.reason, failure.non_finite.first())
+    if let (NewtonFailureReason::NonFinite, Some(&equation)) = (&failure.reason, failure.non_finite.first())
         && let Some(trap) = trap_in_loop(system, equation, values)
     {
-        return non_finite(system, values[crate::lower::Layout::TIME], Some(trap));
+        return non_finite(system, values[crate::lower::ValueLayout::TIME], Some(trap));
     }
     let dae = &system.dae;
     let worst = failure.residuals.first().map_or(0, |r| r.0);
@@ -212,15 +224,15 @@ fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[
     let names = names.collect::<Vec<_>>().join(", ");
     let more = if failure.unknowns.len() > 3 { ", ..." } else { "" };
     let text = match &failure.reason {
-        Reason::Singular(u) => {
+        NewtonFailureReason::Singular(u) => {
             format!("the equations for {names}{more} do not determine `{}` {when}", name(dae, *u))
         }
-        Reason::NonFinite => format!("the equations for {names}{more} have no finite value {when}"),
-        Reason::NoConvergence => format!("no solution found for {names}{more} {when}"),
+        NewtonFailureReason::NonFinite => format!("the equations for {names}{more} have no finite value {when}"),
+        NewtonFailureReason::NoConvergence => format!("no solution found for {names}{more} {when}"),
     };
     let rows = failure.unknowns.iter().take(ROWS).map(|&(u, from, to)| [name(dae, u), number(from), number(to)]);
     let residual = failure.residuals.first().map_or(0.0, |r| r.1);
-    if let (Reason::Singular(_), Some(v)) =
+    if let (NewtonFailureReason::Singular(_), Some(v)) =
         (&failure.reason, dae.equations.get(worst as usize).and_then(|e| one_sided(dae, e)))
     {
         let v = &dae.variables[v.index()].name;
@@ -243,10 +255,10 @@ fn loop_failure(system: &System, code: Code, failure: &NewtonFailure, values: &[
 }
 
 /// A variable whose derivative stands in one branch of an `if` of an equation and not in the other.
-fn one_sided(dae: &Dae, equation: &Equation) -> Option<VarId> {
+fn one_sided(dae: &Dae, equation: &FlatEquation) -> Option<VarId> {
     let nodes = dae.exprs.reachable(&[equation.lhs, equation.rhs], |_| true);
     nodes.into_iter().find_map(|e| {
-        let Node::If(_, a, b) = dae.exprs.node(e) else { return None };
+        let ExprNode::If(_, a, b) = dae.exprs.node(e) else { return None };
         let (a, b) = (dae.exprs.derivatives(a), dae.exprs.derivatives(b));
         a.iter().find(|v| !b.contains(v)).or_else(|| b.iter().find(|v| !a.contains(v))).copied()
     })
@@ -254,7 +266,7 @@ fn one_sided(dae: &Dae, equation: &Equation) -> Option<VarId> {
 
 /// The operation behind a residual that is not finite, with its equation: what follows explicitly in its loop comes
 /// before the residual that reads it.
-fn trap_in_loop(system: &System, equation: u32, values: &[f64]) -> Option<(Trap, u32)> {
+fn trap_in_loop(system: &ExecutableSystem, equation: u32, values: &[f64]) -> Option<(NonFiniteTrap, u32)> {
     let dae = &system.dae;
     let inner = loop_of(dae, equation).into_iter().flat_map(|l| &l.inner);
     let behind = inner.clone().find_map(|a| Some((system.trap(a.value, values)?, a.equation)));
@@ -266,13 +278,13 @@ fn trap_in_loop(system: &System, equation: u32, values: &[f64]) -> Option<(Trap,
 }
 
 /// The loop that an equation is a residual of.
-fn loop_of(dae: &Dae, equation: u32) -> Option<&Loop> {
+fn loop_of(dae: &Dae, equation: u32) -> Option<&AlgebraicLoop> {
     let blocks = dae.initial.iter().chain(&dae.event).flat_map(|block| match block {
-        Block::Mixed(mixed) => mixed.continuous.as_slice(),
+        BltBlock::Mixed(mixed) => mixed.continuous.as_slice(),
         other => std::slice::from_ref(other),
     });
     let mut loops = blocks.filter_map(|block| match block {
-        Block::Loop(l) if l.residuals.iter().any(|r| r.1 == equation) => Some(l),
+        BltBlock::Loop(l) if l.residuals.iter().any(|r| r.1 == equation) => Some(l),
         _ => None,
     });
     loops.next()
@@ -280,7 +292,7 @@ fn loop_of(dae: &Dae, equation: u32) -> Option<&Loop> {
 
 /// E302: a loop solves for pressures of ports, and none of another port enters it. That densities depend on them makes
 /// the equations regular, but fixes nothing: two flow sources with an orifice between need a tank.
-fn no_pressure_level(dae: &Dae, l: &Loop) -> Option<Diagnostic> {
+fn no_pressure_level(dae: &Dae, l: &AlgebraicLoop) -> Option<Diagnostic> {
     let variable = |v: VarId| &dae.variables[v.index()];
     let is_connector = |v: VarId| places::is_connector(&dae.variables, variable(v).origin.instance);
     let names =
@@ -336,7 +348,7 @@ fn switching<'a>(dae: &'a Dae, variables: &[VarId]) -> Vec<&'a str> {
 }
 
 /// Parts hold a load together, and the equations do not say how much each of them carries.
-pub fn shared_load(system: &System, variables: &[VarId], unknown: Unknown, t: f64) -> Diagnostic {
+pub fn shared_load(system: &ExecutableSystem, variables: &[VarId], unknown: Unknown, t: f64) -> Diagnostic {
     let dae = &system.dae;
     let names: Vec<String> = switching(dae, variables).iter().take(ROWS).map(|c| format!("`{c}`")).collect();
     let text = format!("{} hold one load together, and nothing says how they share it", names.join(", "));
@@ -353,7 +365,7 @@ pub fn shared_load(system: &System, variables: &[VarId], unknown: Unknown, t: f6
 }
 
 /// W511: a loop has gone on at another root; the unknown that moved most, from where to where.
-pub fn root_jumped(system: &System, t: f64, column: usize, from: f64, to: f64) -> Diagnostic {
+pub fn root_jumped(system: &ExecutableSystem, t: f64, column: usize, from: f64, to: f64) -> Diagnostic {
     let variable = &system.dae.variables[system.columns[column].variable.index()];
     let unit = variable.unit.as_deref().filter(|u| *u != "1").map_or_else(String::new, |u| format!(" {u}"));
     let text =
@@ -364,7 +376,7 @@ pub fn root_jumped(system: &System, t: f64, column: usize, from: f64, to: f64) -
 }
 
 /// Discrete values without which something is undetermined, as the shares of two dry frictions that hold one shaft.
-fn shared(system: &System, code: Code, variables: &[VarId], unknown: Unknown, when: &str) -> Diagnostic {
+fn shared(system: &ExecutableSystem, code: Code, variables: &[VarId], unknown: Unknown, when: &str) -> Diagnostic {
     let dae = &system.dae;
     let components = switching(dae, variables);
     let names: Vec<String> = components.iter().take(ROWS).map(|c| format!("`{c}`")).collect();
@@ -384,7 +396,7 @@ fn shared(system: &System, code: Code, variables: &[VarId], unknown: Unknown, wh
 }
 
 /// Discrete values that find no rest.
-pub fn changing(system: &System, code: Code, variables: &[VarId], when: &str) -> Diagnostic {
+pub fn changing(system: &ExecutableSystem, code: Code, variables: &[VarId], when: &str) -> Diagnostic {
     let dae = &system.dae;
     let names = variables.iter().take(ROWS).map(|v| format!("`{}`", dae.variables[v.index()].name));
     let names = names.collect::<Vec<_>>().join(", ");
@@ -399,7 +411,7 @@ pub fn changing(system: &System, code: Code, variables: &[VarId], when: &str) ->
 }
 
 /// E501: the integrator gave up. `errors` are the weighted local errors of the unknowns.
-pub fn step_collapse(system: &System, t: f64, h: f64, why: &str, errors: &[f64], y: &[f64]) -> Diagnostic {
+pub fn step_collapse(system: &ExecutableSystem, t: f64, h: f64, why: &str, errors: &[f64], y: &[f64]) -> Diagnostic {
     let dae = &system.dae;
     let mut order: Vec<usize> = (0..errors.len()).collect();
     order.sort_by(|&a, &b| errors[b].abs().total_cmp(&errors[a].abs()));
@@ -432,7 +444,7 @@ pub fn step_collapse(system: &System, t: f64, h: f64, why: &str, errors: &[f64],
 }
 
 /// Says of a collapse that an equation determines nothing there.
-pub fn idle_equation(system: &System, collapse: Diagnostic, equation: u32) -> Diagnostic {
+pub fn idle_equation(system: &ExecutableSystem, collapse: Diagnostic, equation: u32) -> Diagnostic {
     let Some(origin) = system.dae.equations.get(equation as usize).map(|e| e.origin) else { return collapse };
     let component = component(&system.dae, origin).map(|(name, class)| format!(" (`{name}`, a `{class}`)"));
     let mut collapse = collapse;

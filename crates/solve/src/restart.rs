@@ -5,10 +5,10 @@
 //! Else IDA restarts with order one, with a first step from the second derivative (IDA's own choice, half a tolerance
 //! of change, is about a thousand times too short).
 
-use super::ida::{Equations, Ida};
-use super::model::Model;
-use super::newton::Scales;
-use crate::lower::{Column, ColumnRole, System};
+use super::ida::{DaeEquations, Ida};
+use super::model::IntegrationModel;
+use super::newton::VariableScales;
+use crate::lower::{ColumnRole, ExecutableSystem, UnknownColumn};
 
 /// A jump of an unknown, in tolerances, that does not need a restart.
 const SMALL_JUMP: f64 = 1.0;
@@ -26,7 +26,7 @@ const HALVINGS: i32 = 20;
 
 /// Buffers for the unknowns around an event.
 #[derive(Debug, Default)]
-pub struct Restart {
+pub struct IntegratorRestart {
     nominal: Vec<f64>,
     tolerance: f64,
     y: Vec<f64>,
@@ -45,19 +45,19 @@ pub struct Restart {
     probe: f64,
 }
 
-impl Restart {
+impl IntegratorRestart {
     /// For the unknowns of a system; one dummy if it has none.
-    pub fn new(system: &System, scales: &Scales, tolerance: f64) -> Self {
+    pub fn new(system: &ExecutableSystem, scales: &VariableScales, tolerance: f64) -> Self {
         let mut nominal: Vec<f64> = system.columns.iter().map(|c| scales.nominal[c.variable.index()]).collect();
         let layout = &system.layout;
-        let der = |c: &Column| if c.role == ColumnRole::Algebraic { None } else { layout.der(c.variable) };
+        let der = |c: &UnknownColumn| if c.role == ColumnRole::Algebraic { None } else { layout.der(c.variable) };
         let slots = system.columns.iter().map(|c| (layout.var(c.variable), der(c))).collect();
         if nominal.is_empty() {
             nominal.push(1.0);
         }
         let n = nominal.len();
         let zeros = || vec![0.0; n];
-        Restart {
+        IntegratorRestart {
             nominal,
             tolerance,
             y: zeros(),
@@ -95,7 +95,7 @@ impl Restart {
 
     /// Takes the unknowns from their slots after an event or the start. A conserved quantity changes by what the event has
     /// changed of the states behind it: it does not lose what the corrector left in them.
-    pub fn gather(&mut self, system: &System, values: &mut [f64]) {
+    pub fn gather(&mut self, system: &ExecutableSystem, values: &mut [f64]) {
         system.quantities(values);
         for (i, &(slot, der)) in self.slots.iter().enumerate() {
             self.y[i] = values[slot];
@@ -109,7 +109,7 @@ impl Restart {
     }
 
     /// Remembers the unknowns and the equations' derivatives just before an event.
-    pub fn before(&mut self, system: &System, values: &mut [f64], y: &[f64]) {
+    pub fn before(&mut self, system: &ExecutableSystem, values: &mut [f64], y: &[f64]) {
         self.hold(system, values, |column, _| y[column]);
         self.old.copy_from_slice(y);
         for (old, &(_, der)) in self.old_slopes.iter_mut().zip(&self.slots) {
@@ -118,11 +118,11 @@ impl Restart {
     }
 
     /// Takes the conserved quantities of a saved state for what the integrator had.
-    pub fn resume(&mut self, system: &System, values: &mut [f64]) {
+    pub fn resume(&mut self, system: &ExecutableSystem, values: &mut [f64]) {
         self.hold(system, values, |_, saved| saved);
     }
 
-    fn hold(&mut self, system: &System, values: &mut [f64], kept: impl Fn(usize, f64) -> f64) {
+    fn hold(&mut self, system: &ExecutableSystem, values: &mut [f64], kept: impl Fn(usize, f64) -> f64) {
         system.quantities(values);
         for (held, integral) in self.held.iter_mut().zip(&system.integrals) {
             let saved = values[self.slots[integral.column].0];
@@ -142,7 +142,7 @@ impl Restart {
     }
 
     /// Whether the integrator's past still serves at a stop time; `next` is the next one.
-    pub fn past_serves(&self, ida: &Ida<Model<'_>>, t: f64, next: f64) -> bool {
+    pub fn past_serves(&self, ida: &Ida<IntegrationModel<'_>>, t: f64, next: f64) -> bool {
         let h = ida.step_lengths().1.abs().min(next - t);
         let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
         self.jump() <= SMALL_JUMP && kink * h <= SMALL_KINK * f64::from(ida.order() + 1)
@@ -150,7 +150,7 @@ impl Restart {
 
     /// The same at a root, beyond which the integrator has already stepped with the old equations: true when the new
     /// ones agree there.
-    pub fn past_serves_ahead(&mut self, ida: &mut Ida<Model<'_>>, t: f64, changed: bool) -> bool {
+    pub fn past_serves_ahead(&mut self, ida: &mut Ida<IntegrationModel<'_>>, t: f64, changed: bool) -> bool {
         if !changed {
             // Algebraic unknowns are met to a tolerance only: seen through them a crossing lies behind already, and
             // would never be found, that the exact values of the event still have ahead.
@@ -173,14 +173,14 @@ impl Restart {
     }
 
     /// Keeps in mind how long steps were before a restart.
-    pub fn remember_step(&mut self, ida: &Ida<Model<'_>>) {
+    pub fn remember_step(&mut self, ida: &Ida<IntegrationModel<'_>>) {
         self.usual_step = ida.step_lengths().0.max(0.5 * self.usual_step);
     }
 
     /// Restarts at `t` from the gathered values; `room` is left until the next event. False when IDA refuses.
     pub fn restart(
         &mut self,
-        ida: &mut Ida<Model<'_>>,
+        ida: &mut Ida<IntegrationModel<'_>>,
         t: f64,
         room: f64,
         longest: f64,
@@ -203,7 +203,7 @@ impl Restart {
     /// after the small bounce of a ball, or leaving zero and returning to it, as where a contact slips for a moment. The
     /// straight line of the first step would miss the one, and take the other back at once, over and over. At most a
     /// quarter of the shortest of these times.
-    fn see_return(&mut self, ida: &mut Ida<Model<'_>>, t: f64, h: f64) -> f64 {
+    fn see_return(&mut self, ida: &mut Ida<IntegrationModel<'_>>, t: f64, h: f64) -> f64 {
         let count = ida.equations().roots.len();
         let at = |ahead: f64| {
             let mut g = vec![0.0; count];
@@ -217,7 +217,7 @@ impl Restart {
     }
 
     /// The crossing functions a time `h` ahead, by a parabola through the values and derivatives now.
-    fn crossings_after(&self, ida: &mut Ida<Model<'_>>, t: f64, h: f64, g: &mut [f64]) {
+    fn crossings_after(&self, ida: &mut Ida<IntegrationModel<'_>>, t: f64, h: f64, g: &mut [f64]) {
         let bend = |i: usize| self.correction.get(i).map_or(0.0, |c| c / (self.probe * self.probe));
         let y: Vec<f64> = (0..self.y.len()).map(|i| self.y[i] + h * (self.yp[i] + 0.5 * h * bend(i))).collect();
         ida.equations().crossings(t + h, &y, &self.yp, g);
@@ -233,7 +233,7 @@ impl Restart {
     }
 
     /// The step with this error, in tolerances, with order one; at most `longest`.
-    fn first_step(&mut self, ida: &mut Ida<Model<'_>>, t: f64, longest: f64, room: f64, error: f64) -> f64 {
+    fn first_step(&mut self, ida: &mut Ida<IntegrationModel<'_>>, t: f64, longest: f64, room: f64, error: f64) -> f64 {
         let speed = self.norm(|i| self.yp[i]);
         let usual = if self.usual_step > 0.0 { self.usual_step } else { 1e-3 * room };
         // moves the unknowns by about one tolerance

@@ -1,15 +1,15 @@
 //! Watches whether the chosen states still serve: constraints must stay solvable for the dummies.
 
-use super::newton::Scales;
-use crate::lower::System;
+use super::newton::VariableScales;
+use crate::lower::ExecutableSystem;
 use bramah_expr::VarId;
-use bramah_model::structure::{Selection, StateChoice};
+use bramah_model::structure::{StateChoice, StateSelection};
 
 /// The present dummies are given up when their smallest pivot falls below this part of the best choice's.
 const WEAK: f64 = 0.2;
 
 /// The states to prefer from now on, if some group of constraints has become hard to solve for its dummies.
-pub fn better_choice(system: &System, scales: &Scales, values: &[f64]) -> Option<StateChoice> {
+pub fn better_choice(system: &ExecutableSystem, scales: &VariableScales, values: &[f64]) -> Option<StateChoice> {
     let mut preferred = Vec::new();
     let mut changed = false;
     for selection in &system.dae.selections {
@@ -27,7 +27,12 @@ pub fn better_choice(system: &System, scales: &Scales, values: &[f64]) -> Option
 }
 
 /// The rows of a group with columns in units of the candidates' nominal values; `None` when not finite.
-fn scaled_rows(system: &System, scales: &Scales, selection: &Selection, values: &[f64]) -> Option<Vec<Vec<f64>>> {
+fn scaled_rows(
+    system: &ExecutableSystem,
+    scales: &VariableScales,
+    selection: &StateSelection,
+    values: &[f64],
+) -> Option<Vec<Vec<f64>>> {
     let nominal = |v: &VarId| scales.nominal[v.index()];
     let rows: Vec<Vec<f64>> = selection
         .rows

@@ -1,9 +1,9 @@
 //! What a run is asked to do, and what it reports about its work.
 
-use super::Tangents;
+use super::TangentRequest;
 use super::modes::same_time;
 use bramah_expr::VarId;
-use bramah_model::flat::Experiment;
+use bramah_model::flat::ExperimentAnnotation;
 
 /// Event rows that a run has at most unless it is asked for more: some tens of megabytes with thirty variables.
 pub const MOST_EVENT_ROWS: u64 = 100_000;
@@ -34,7 +34,7 @@ pub struct Settings {
     /// Distance of checkpoints, at which the integrator begins afresh; infinite for none.
     pub checkpoint_every: f64,
     /// Sensitivities to carry along; not together with checkpoints or with states that change.
-    pub tangents: Option<Tangents>,
+    pub tangents: Option<TangentRequest>,
 }
 
 impl Default for Settings {
@@ -58,7 +58,7 @@ impl Default for Settings {
 
 impl Settings {
     /// What a model's `experiment` annotation asks for; 500 intervals when it gives none.
-    pub fn from_experiment(experiment: &Experiment) -> Self {
+    pub fn from_experiment(experiment: &ExperimentAnnotation) -> Self {
         let standard = Settings::default();
         let start_time = experiment.start_time.unwrap_or(standard.start_time);
         let stop_time = experiment.stop_time.unwrap_or(start_time + 1.0);

@@ -3,12 +3,12 @@
 //! After its first pass an iteration changes little: `pre` values, the modes of `sample`, states that are set. All else
 //! would come out as it is, loops included, which are what costs.
 
-use crate::lower::{BlockCode, System};
+use crate::lower::{BlockCode, ExecutableSystem};
 use bramah_expr::ExprId;
 
 /// Blocks by what they read, and which of them wait.
 #[derive(Debug)]
-pub struct Stale {
+pub struct StaleBlocks {
     /// Of each slot, where its readers begin among `readers`, and one past the last.
     starts: Vec<u32>,
     /// Blocks in the order of the slots that they read.
@@ -19,9 +19,9 @@ pub struct Stale {
     before: Vec<f64>,
 }
 
-impl Stale {
+impl StaleBlocks {
     /// For the event blocks of a system; none waits.
-    pub fn new(system: &System) -> Self {
+    pub fn new(system: &ExecutableSystem) -> Self {
         let computed: Vec<Vec<usize>> = system.event.iter().map(computed).collect();
         let mut maker = vec![None; system.layout.len()];
         for (number, slots) in (0_u32..).zip(&computed) {
@@ -34,7 +34,7 @@ impl Stale {
         }
         reads.sort_unstable();
         let starts = (0..=system.layout.len()).map(|slot| reads.partition_point(|r| r.0 < slot) as u32).collect();
-        Stale {
+        StaleBlocks {
             starts,
             readers: reads.iter().map(|r| r.1).collect(),
             waiting: vec![false; computed.len()],
@@ -84,7 +84,7 @@ fn computed(block: &BlockCode) -> Vec<usize> {
 }
 
 /// The slots that a block reads: those of variables, derivatives and `pre` values.
-fn read(system: &System, block: &BlockCode) -> Vec<usize> {
+fn read(system: &ExecutableSystem, block: &BlockCode) -> Vec<usize> {
     let (layout, found) = (&system.layout, system.dae.exprs.dependencies(&expressions(block)));
     let vars = found.vars.iter().map(|&v| layout.var(v));
     let ders = found.ders.iter().filter_map(|&v| layout.der(v));
@@ -106,12 +106,12 @@ fn expressions(block: &BlockCode) -> Vec<ExprId> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::lower::{Options, lower};
+    use crate::lower::{LoweringOptions, lower};
     use bramah_expr::VarId;
     use std::sync::Arc;
 
     /// A counter at a clock, and a loop for `y` that only the state reaches.
-    fn system() -> System {
+    fn system() -> ExecutableSystem {
         let text = "model M
                discrete Integer n(start = 0, fixed = true);
                Real x(start = 1, fixed = true), y;
@@ -124,12 +124,12 @@ mod tests {
              end M;";
         let flat = bramah_model::compile::flatten_text(text, None).value.expect("sound").flat;
         let dae = bramah_model::compile::analyze(&flat).value.expect("sound");
-        lower(Arc::new(dae), &Options::INTERPRETED)
+        lower(Arc::new(dae), &LoweringOptions::INTERPRETED)
     }
 
     /// Whether a loop waits, and whether anything else does, after a slot has changed.
-    fn waits(system: &System, slot: usize) -> (bool, bool) {
-        let mut stale = Stale::new(system);
+    fn waits(system: &ExecutableSystem, slot: usize) -> (bool, bool) {
+        let mut stale = StaleBlocks::new(system);
         stale.touch(slot);
         let values = system.layout.values();
         let mut found = (false, false);

@@ -1,7 +1,7 @@
 //! The state of a run at one time: saved, restored, carried over to another choice of states.
 
-use super::past::Past;
-use crate::lower::System;
+use super::past::DelayHistory;
+use crate::lower::ExecutableSystem;
 use bramah_expr::VarId;
 use bramah_model::flat::Variability;
 use rustc_hash::FxHashMap;
@@ -18,12 +18,12 @@ pub struct State {
     /// Derivative of each variable; NaN where the model has none.
     pub derivatives: Vec<f64>,
     /// What delays read of the time before; empty where there are none.
-    pub past: Past,
+    pub past: DelayHistory,
 }
 
 impl State {
     /// Whether it is of a model with these variables.
-    pub fn fits(&self, system: &System) -> bool {
+    pub fn fits(&self, system: &ExecutableSystem) -> bool {
         let variables = &system.dae.variables;
         self.names.len() == variables.len() && self.names.iter().zip(variables).all(|(n, v)| *n == v.name)
     }
@@ -44,12 +44,12 @@ impl State {
             return None;
         }
         let (values, derivatives) = (numbers[2..2 + n].to_vec(), numbers[2 + n..2 + 2 * n].to_vec());
-        let past = Past::from_numbers(&numbers[2 + 2 * n..])?;
+        let past = DelayHistory::from_numbers(&numbers[2 + 2 * n..])?;
         Some(State { time: numbers[1], names, values, derivatives, past })
     }
 
     /// The state in `values`.
-    pub fn save(system: &System, time: f64, values: &[f64], past: Past) -> Self {
+    pub fn save(system: &ExecutableSystem, time: f64, values: &[f64], past: DelayHistory) -> Self {
         let ids = || (0..).map(VarId).take(system.dae.variables.len());
         State {
             time,
@@ -62,7 +62,7 @@ impl State {
 
     /// Writes the state into `values`; variables it does not know keep theirs. Parameters are left alone,
     /// but those that initialization found are part of the state.
-    pub fn restore(&self, system: &System, values: &mut [f64]) {
+    pub fn restore(&self, system: &ExecutableSystem, values: &mut [f64]) {
         let same = self.names.len() == system.dae.variables.len();
         let same = same && self.names.iter().zip(&system.dae.variables).all(|(n, v)| *n == v.name);
         let by_name: FxHashMap<&str, usize> = if same {

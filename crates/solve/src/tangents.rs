@@ -1,14 +1,14 @@
 //! Sensitivities that a run carries along: what is asked, and the equations' derivatives along a direction.
 
-use super::ida::{Differentiable, Equations, Evaluation};
-use super::model::Model;
-use crate::lower::{RowKind, System};
+use super::ida::{DaeEquations, DifferentiableEquations, EvaluationStatus};
+use super::model::IntegrationModel;
+use crate::lower::{ExecutableSystem, ResidualRowKind};
 use bramah_expr::VarId;
 
 /// The sensitivities that a run shall carry along. Each row of the run then holds the wanted values, and after them for
 /// each direction their derivatives.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tangents {
+pub struct TangentRequest {
     /// States that stand still, as parameters made states do: there is no error of theirs to count.
     pub still: Vec<VarId>,
     /// Per direction the derivatives of states at the start, those not named being 0.
@@ -19,7 +19,7 @@ pub struct Tangents {
 }
 
 /// The column of a variable, or of the one it is an alias of, and the sign.
-pub fn column(system: &System, v: VarId) -> Option<(usize, f64)> {
+pub fn column(system: &ExecutableSystem, v: VarId) -> Option<(usize, f64)> {
     let alias = system.dae.aliases.iter().find(|a| a.variable == v);
     let (target, sign) = alias.map_or((v, 1.0), |a| (a.target, if a.negated { -1.0 } else { 1.0 }));
     system.columns.iter().position(|c| c.variable == target).map(|j| (j, sign))
@@ -27,7 +27,7 @@ pub fn column(system: &System, v: VarId) -> Option<(usize, f64)> {
 
 /// dF/dy and dF/dy' at a point.
 #[derive(Clone, Debug, Default)]
-pub struct Slopes {
+pub struct ResidualDerivatives {
     /// Where: time, unknowns, derivatives.
     at: Option<(f64, Vec<f64>, Vec<f64>)>,
     /// dF/dy, by the system's pattern.
@@ -36,14 +36,15 @@ pub struct Slopes {
     rates: Vec<f64>,
 }
 
-impl Slopes {
+impl ResidualDerivatives {
     /// For a system.
-    pub fn new(system: &System) -> Slopes {
-        let implicit =
-            |(c, r): (&crate::lower::Column, &crate::lower::Row)| c.is_state() && r.kind != RowKind::Derivative;
+    pub fn new(system: &ExecutableSystem) -> ResidualDerivatives {
+        let implicit = |(c, r): (&crate::lower::UnknownColumn, &crate::lower::ResidualRow)| {
+            c.is_state() && r.kind != ResidualRowKind::Derivative
+        };
         let torn = system.columns.iter().zip(&system.rows).any(implicit);
         let entries = system.pattern.nnz();
-        Slopes { at: None, here: vec![0.0; entries], rates: vec![0.0; if torn { entries } else { 0 }] }
+        ResidualDerivatives { at: None, here: vec![0.0; entries], rates: vec![0.0; if torn { entries } else { 0 }] }
     }
 
     fn stands(&self, t: f64, y: &[f64], yp: &[f64]) -> bool {
@@ -59,19 +60,19 @@ impl Slopes {
     }
 }
 
-impl Differentiable for Model<'_> {
-    fn differentiate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Evaluation {
-        let mut slopes = self.slopes.take().unwrap_or_else(|| Box::new(Slopes::new(self.system)));
-        let mut done = Evaluation::Done;
+impl DifferentiableEquations for IntegrationModel<'_> {
+    fn differentiate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> EvaluationStatus {
+        let mut slopes = self.slopes.take().unwrap_or_else(|| Box::new(ResidualDerivatives::new(self.system)));
+        let mut done = EvaluationStatus::Done;
         if !slopes.stands(t, y, yp) {
             done = self.jacobian(t, 0.0, y, yp, &mut slopes.here);
-            if done == Evaluation::Done && !slopes.rates.is_empty() {
+            if done == EvaluationStatus::Done && !slopes.rates.is_empty() {
                 done = self.jacobian(t, 1.0, y, yp, &mut slopes.rates);
                 slopes.rates.iter_mut().zip(&slopes.here).for_each(|(r, h)| *r -= h);
             }
             slopes.note(t, y, yp);
         }
-        if done == Evaluation::Retry {
+        if done == EvaluationStatus::Retry {
             slopes.at = None;
         }
         self.slopes = Some(slopes);
@@ -88,7 +89,9 @@ impl Differentiable for Model<'_> {
         let Some(slopes) = &self.slopes else { return };
         let (system, pattern) = (self.system, &self.system.pattern);
         if slopes.rates.is_empty() {
-            let own = |(row, sp): (&crate::lower::Row, &f64)| if row.kind == RowKind::Derivative { *sp } else { 0.0 };
+            let own = |(row, sp): (&crate::lower::ResidualRow, &f64)| {
+                if row.kind == ResidualRowKind::Derivative { *sp } else { 0.0 }
+            };
             r.iter_mut().zip(system.rows.iter().zip(sp)).for_each(|(r, at)| *r = own(at));
         } else {
             r.fill(0.0);

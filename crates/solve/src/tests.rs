@@ -3,21 +3,24 @@
 mod events;
 mod integration;
 
-use crate::lower::{Options, System, lower};
-use crate::{Control, Input, Run, Settings, signals, simulate};
-use bramah_expr::{ExprId, Exprs, Rel, VarId};
-use bramah_model::flat::{Equation, Origin, OriginKind, Type, Variability, Variable};
-use bramah_model::structure::{Action, ActionKind, Assign, Block, Crossing, CrossingKind, Dae, Loop, Sample, Unknown};
+use crate::lower::{ExecutableSystem, LoweringOptions, lower};
+use crate::{Control, RecordedInput, RunResult, Settings, signals, simulate};
+use bramah_expr::{ExprId, Exprs, RelationalOp, VarId};
+use bramah_model::flat::{ElementOrigin, FlatEquation, FlatVariable, OriginKind, ScalarType, Variability};
+use bramah_model::structure::{
+    AlgebraicLoop, BltBlock, CrossingKind, Dae, EventAction, EventActionKind, ExplicitAssignment, SampleEvent, Unknown,
+    ZeroCrossing,
+};
 use bramah_results::Trajectory;
 use bramah_syntax::diag::{FileId, Span};
 use std::sync::Arc;
 
-const ORIGIN: Origin =
-    Origin { span: Span { file: FileId(0), start: 0, end: 0 }, instance: 0, kind: OriginKind::Declared };
+const ORIGIN: ElementOrigin =
+    ElementOrigin { span: Span { file: FileId(0), start: 0, end: 0 }, instance: 0, kind: OriginKind::Declared };
 
 /// A plain continuous variable.
-pub fn variable(name: &str) -> Variable {
-    Variable::plain(name, Type::Real, Variability::Continuous, ORIGIN)
+pub fn variable(name: &str) -> FlatVariable {
+    FlatVariable::plain(name, ScalarType::Real, Variability::Continuous, ORIGIN)
 }
 
 /// Builds a sorted model: calls stand in the order of evaluation.
@@ -39,7 +42,7 @@ impl Make {
         self.e().var(v)
     }
 
-    fn add(&mut self, variable: Variable) -> VarId {
+    fn add(&mut self, variable: FlatVariable) -> VarId {
         self.dae.variables.push(variable);
         VarId(self.dae.variables.len() as u32 - 1)
     }
@@ -47,41 +50,41 @@ impl Make {
     /// A state with its initial value.
     fn state(&mut self, name: &str, start: f64) -> (VarId, ExprId) {
         let start = self.num(start);
-        let v = self.add(Variable { start: Some(start), fixed: true, ..variable(name) });
+        let v = self.add(FlatVariable { start: Some(start), fixed: true, ..variable(name) });
         self.dae.states.push(v);
         let assign = self.made(Unknown::Var(v), start);
-        self.dae.initial.push(Block::Assign(assign));
+        self.dae.initial.push(BltBlock::Assign(assign));
         (v, self.dae.exprs.var(v))
     }
 
     fn parameter(&mut self, name: &str, value: f64) -> ExprId {
         let binding = Some(self.num(value));
-        let v = self.add(Variable { binding, variability: Variability::Parameter, ..variable(name) });
+        let v = self.add(FlatVariable { binding, variability: Variability::Parameter, ..variable(name) });
         self.dae.parameters.push(v);
         self.var(v)
     }
 
     fn discrete(&mut self, name: &str, start: f64) -> (VarId, ExprId) {
         let start = Some(self.num(start));
-        let v = self.add(Variable { start, variability: Variability::Discrete, ..variable(name) });
+        let v = self.add(FlatVariable { start, variability: Variability::Discrete, ..variable(name) });
         self.dae.discrete.push(v);
         (v, self.dae.exprs.var(v))
     }
 
-    fn made(&mut self, unknown: Unknown, value: ExprId) -> Assign {
+    fn made(&mut self, unknown: Unknown, value: ExprId) -> ExplicitAssignment {
         let lhs = match unknown {
             Unknown::Var(v) => self.dae.exprs.var(v),
             Unknown::Der(v) => self.dae.exprs.der(v),
         };
-        self.dae.equations.push(Equation { lhs, rhs: value, origin: ORIGIN });
-        Assign { unknown, value, equation: self.dae.equations.len() as u32 - 1 }
+        self.dae.equations.push(FlatEquation { lhs, rhs: value, origin: ORIGIN });
+        ExplicitAssignment { unknown, value, equation: self.dae.equations.len() as u32 - 1 }
     }
 
     /// A continuous assignment, in all three systems.
     fn assign(&mut self, unknown: Unknown, value: ExprId) {
         let assign = self.made(unknown, value);
         for blocks in [&mut self.dae.continuous, &mut self.dae.event, &mut self.dae.initial] {
-            blocks.push(Block::Assign(assign));
+            blocks.push(BltBlock::Assign(assign));
         }
     }
 
@@ -94,14 +97,14 @@ impl Make {
     /// A discrete assignment, at events and at the start.
     fn assign_discrete(&mut self, v: VarId, value: ExprId) {
         let assign = self.made(Unknown::Var(v), value);
-        self.dae.event.push(Block::Assign(assign));
-        self.dae.initial.push(Block::Assign(assign));
+        self.dae.event.push(BltBlock::Assign(assign));
+        self.dae.initial.push(BltBlock::Assign(assign));
     }
 
     /// The mode of a relation with a root function.
-    fn relation(&mut self, name: &str, rel: Rel, left: ExprId, right: ExprId) -> ExprId {
+    fn relation(&mut self, name: &str, rel: RelationalOp, left: ExprId, right: ExprId) -> ExprId {
         let (mode, e) = self.discrete(name, 0.0);
-        self.dae.crossings.push(Crossing { mode, kind: CrossingKind::Relation(rel, left, right), origin: ORIGIN });
+        self.dae.crossings.push(ZeroCrossing { mode, kind: CrossingKind::Relation(rel, left, right), origin: ORIGIN });
         let value = self.dae.exprs.rel(rel, left, right);
         self.assign_discrete(mode, value);
         e
@@ -110,9 +113,9 @@ impl Make {
     /// The mode of `time >= at`.
     fn after(&mut self, name: &str, at: ExprId) -> ExprId {
         let (mode, e) = self.discrete(name, 0.0);
-        self.dae.crossings.push(Crossing { mode, kind: CrossingKind::Time(Rel::Ge, at), origin: ORIGIN });
+        self.dae.crossings.push(ZeroCrossing { mode, kind: CrossingKind::Time(RelationalOp::Ge, at), origin: ORIGIN });
         let time = self.e().time();
-        let value = self.e().rel(Rel::Ge, time, at);
+        let value = self.e().rel(RelationalOp::Ge, time, at);
         self.assign_discrete(mode, value);
         e
     }
@@ -121,16 +124,16 @@ impl Make {
         let (mode, e) = self.discrete("sample", 0.0);
         self.dae.discrete.pop();
         let (start, interval) = (self.num(start), self.num(interval));
-        self.dae.samples.push(Sample { mode, start, interval, origin: ORIGIN });
+        self.dae.samples.push(SampleEvent { mode, start, interval, origin: ORIGIN });
         e
     }
 
     /// True in the pass in which a discrete variable becomes true, not during initialization.
     fn edge(&mut self, e: ExprId) -> ExprId {
-        let bramah_expr::Node::Var(v) = self.dae.exprs.node(e) else { panic!("a variable") };
+        let bramah_expr::ExprNode::Var(v) = self.dae.exprs.node(e) else { panic!("a variable") };
         let before = self.e().pre(v);
         let not_before = self.e().not(before);
-        let initial = self.e().intern(bramah_expr::Node::Initial);
+        let initial = self.e().intern(bramah_expr::ExprNode::Initial);
         let running = self.e().not(initial);
         let edge = self.e().and(e, not_before);
         self.e().and(running, edge)
@@ -146,7 +149,7 @@ impl Make {
 
     fn reinit(&mut self, condition: ExprId, x: VarId, value: ExprId) {
         let fires = self.edge(condition);
-        self.dae.actions.push(Action { fires, kind: ActionKind::Reinit(x, value), origin: ORIGIN });
+        self.dae.actions.push(EventAction { fires, kind: EventActionKind::Reinit(x, value), origin: ORIGIN });
     }
 
     /// A loop in all three systems.
@@ -155,23 +158,23 @@ impl Make {
         let residuals = residuals
             .into_iter()
             .map(|lhs| {
-                self.dae.equations.push(Equation { lhs, rhs: zero, origin: ORIGIN });
+                self.dae.equations.push(FlatEquation { lhs, rhs: zero, origin: ORIGIN });
                 (lhs, self.dae.equations.len() as u32 - 1)
             })
             .collect();
-        let torn = Loop { tearing, inner: vec![], residuals, linear };
+        let torn = AlgebraicLoop { tearing, inner: vec![], residuals, linear };
         for blocks in [&mut self.dae.continuous, &mut self.dae.event, &mut self.dae.initial] {
-            blocks.push(Block::Loop(torn.clone()));
+            blocks.push(BltBlock::Loop(torn.clone()));
         }
     }
 
-    fn system(self) -> System {
-        lower(Arc::new(self.dae), &Options::INTERPRETED)
+    fn system(self) -> ExecutableSystem {
+        lower(Arc::new(self.dae), &LoweringOptions::INTERPRETED)
     }
 }
 
 /// Runs and records all variables.
-fn run(system: &System, settings: Settings, inputs: &[Input]) -> (Run, Trajectory) {
+fn run(system: &ExecutableSystem, settings: Settings, inputs: &[RecordedInput]) -> (RunResult, Trajectory) {
     let wanted: Vec<VarId> = (0..system.dae.variables.len() as u32).map(VarId).collect();
     let mut trajectory = Trajectory::new(signals(&system.dae, &wanted));
     let settings = Settings { wanted, ..settings };

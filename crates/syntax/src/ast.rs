@@ -84,7 +84,7 @@ impl ClassKind {
 /// Prefixes of classes and components.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica keywords")]
-pub struct Prefixes {
+pub struct ElementPrefixes {
     pub encapsulated: bool,
     pub partial: bool,
     pub final_: bool,
@@ -102,9 +102,9 @@ pub struct Class {
     /// model, function, ...
     pub kind: ClassKind,
     /// partial, replaceable, ...
-    pub prefixes: Prefixes,
+    pub prefixes: ElementPrefixes,
     /// `constrainedby` of a replaceable class.
-    pub constraint: Option<Constraint>,
+    pub constraint: Option<ConstrainingClause>,
     /// What it holds.
     pub body: ClassBody,
     /// The description string.
@@ -117,7 +117,7 @@ pub struct Class {
 
 /// `constrainedby T(...)`.
 #[derive(Clone, Debug)]
-pub struct Constraint {
+pub struct ConstrainingClause {
     /// The constraining type.
     pub path: Path,
     /// Its modification.
@@ -198,11 +198,11 @@ pub enum ElementKind {
     /// `import ...`
     Import(Import),
     /// `extends B(...)`
-    Extends(Extends),
+    Extends(ExtendsClause),
     /// A nested class.
     Class(Box<Class>),
     /// A component clause with one component (a clause with several is split).
-    Component(Box<Component>),
+    Component(Box<ComponentDeclaration>),
 }
 
 /// The forms of `import`.
@@ -223,7 +223,7 @@ pub enum Import {
 
 /// `extends B(mods, break c, break connect(a, b)) annotation(...)`.
 #[derive(Clone, Debug)]
-pub struct Extends {
+pub struct ExtendsClause {
     /// The base class.
     pub base: Path,
     /// Its modification.
@@ -238,15 +238,15 @@ pub struct TypePrefix {
     /// `stream`
     pub stream: bool,
     /// `discrete`, `parameter`, `constant`
-    pub variability: Option<Variability>,
+    pub variability: Option<VariabilityPrefix>,
     /// `input`, `output`
-    pub causality: Option<Causality>,
+    pub causality: Option<CausalityPrefix>,
 }
 
 /// Declared variability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the Modelica keywords")]
-pub enum Variability {
+pub enum VariabilityPrefix {
     Constant,
     Parameter,
     Discrete,
@@ -255,18 +255,18 @@ pub enum Variability {
 /// Declared causality.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica keywords")]
-pub enum Causality {
+pub enum CausalityPrefix {
     Input,
     Output,
 }
 
 /// One declared component.
 #[derive(Clone, Debug)]
-pub struct Component {
+pub struct ComponentDeclaration {
     /// Its name.
     pub name: Ident,
     /// inner, outer, replaceable, ...
-    pub prefixes: Prefixes,
+    pub prefixes: ElementPrefixes,
     /// flow, parameter, input, ...
     pub prefix: TypePrefix,
     /// Its type.
@@ -278,7 +278,7 @@ pub struct Component {
     /// `if condition`
     pub condition: Option<Expr>,
     /// `constrainedby ...`
-    pub constraint: Option<Constraint>,
+    pub constraint: Option<ConstrainingClause>,
     /// The description string.
     pub description: Option<Box<str>>,
     /// `annotation(...)`
@@ -289,7 +289,7 @@ pub struct Component {
 #[derive(Clone, Debug, Default)]
 pub struct Modification {
     /// What stands in brackets.
-    pub arguments: Vec<Argument>,
+    pub arguments: Vec<ModificationArgument>,
     /// What stands after `=`.
     pub value: Option<Expr>,
     /// `break` as value (removes the binding, Modelica 3.6).
@@ -298,20 +298,20 @@ pub struct Modification {
 
 /// One argument of a modification.
 #[derive(Clone, Debug)]
-pub struct Argument {
+pub struct ModificationArgument {
     /// `each`
     pub each: bool,
     /// `final`
     pub final_: bool,
     /// What it does.
-    pub kind: ArgumentKind,
+    pub kind: ModificationArgumentKind,
     /// Where it stands.
     pub span: Span,
 }
 
 /// The kinds of arguments.
 #[derive(Clone, Debug)]
-pub enum ArgumentKind {
+pub enum ModificationArgumentKind {
     /// `a.b(...) = value "text"`
     Modify {
         /// The element.
@@ -322,7 +322,7 @@ pub enum ArgumentKind {
         description: Option<Box<str>>,
     },
     /// `redeclare T x(...)` or `replaceable T x`.
-    Component(Box<Component>),
+    Component(Box<ComponentDeclaration>),
     /// `redeclare model M = N` and the like.
     Class(Box<Class>),
     /// `break name` in `extends` (3.6).
@@ -368,7 +368,7 @@ pub enum EquationKind {
     /// `for i in 1:n, j loop ... end for`
     For {
         /// The iterators, outermost first.
-        iterators: Vec<Iterator>,
+        iterators: Vec<ForIndex>,
         /// The body.
         body: Vec<Equation>,
     },
@@ -380,7 +380,7 @@ pub enum EquationKind {
 
 /// One loop variable.
 #[derive(Clone, Debug)]
-pub struct Iterator {
+pub struct ForIndex {
     /// Its name.
     pub name: Ident,
     /// Its range; `None` when deduced from the body.
@@ -415,7 +415,7 @@ pub enum StatementKind {
     /// `for`
     For {
         /// The iterators, outermost first.
-        iterators: Vec<Iterator>,
+        iterators: Vec<ForIndex>,
         /// The body.
         body: Vec<Statement>,
     },
@@ -504,7 +504,7 @@ pub enum ExprKind {
     /// `true`, `false`
     Boolean(bool),
     /// `a.b[i].c`
-    Reference(Reference),
+    Reference(ComponentReference),
     /// `op a`
     Unary(UnaryOp, Box<Expr>),
     /// `a op b`
@@ -528,7 +528,7 @@ pub enum ExprKind {
     /// `f(a, b, name = c)`; `der`, `initial` and `pure` too.
     Call {
         /// What is called.
-        function: Reference,
+        function: ComponentReference,
         /// Positional arguments.
         args: Vec<Expr>,
         /// Named arguments.
@@ -537,11 +537,11 @@ pub enum ExprKind {
     /// `f(expr for i in 1:n)` and `{expr for i in 1:n}` (then `function` is `None`).
     Comprehension {
         /// `sum`, `max`, ... or none for an array.
-        function: Option<Reference>,
+        function: Option<ComponentReference>,
         /// The element.
         body: Box<Expr>,
         /// The iterators, outermost first.
-        iterators: Vec<Iterator>,
+        iterators: Vec<ForIndex>,
     },
     /// `function f(x = 1)` as an argument.
     PartialApplication {
@@ -566,7 +566,7 @@ pub enum ExprKind {
 
 /// A component reference.
 #[derive(Clone, Debug)]
-pub struct Reference {
+pub struct ComponentReference {
     /// True with a leading dot.
     pub global: bool,
     /// The parts, at least one.

@@ -22,8 +22,12 @@ pub fn format(file: FileId, text: &str) -> Result<String, Vec<Diagnostic>> {
         return with_line_ends(text, file);
     }
     let tokens = lex(file, text).tokens;
-    let mut layout =
-        Layout { text, tokens: &tokens, out: String::with_capacity(text.len()), blocks: Blocks::default() };
+    let mut layout = SourceFormatter {
+        text,
+        tokens: &tokens,
+        out: String::with_capacity(text.len()),
+        blocks: BlockNesting::default(),
+    };
     for i in 0..tokens.len() {
         layout.token(i);
     }
@@ -36,22 +40,22 @@ fn with_line_ends(text: &str, file: FileId) -> Result<String, Vec<Diagnostic>> {
     Ok(format(file, &text.replace("\r\n", "\n"))?.replace('\n', "\r\n"))
 }
 
-struct Layout<'a> {
+struct SourceFormatter<'a> {
     text: &'a str,
     tokens: &'a [Token],
     out: String,
-    blocks: Blocks,
+    blocks: BlockNesting,
 }
 
 /// What stands between two tokens.
-enum Gap<'a> {
+enum TokenGap<'a> {
     /// So many line breaks.
     Lines(usize),
     /// A comment, from its first sign to its last.
     Comment(&'a str),
 }
 
-impl Layout<'_> {
+impl SourceFormatter<'_> {
     fn token(&mut self, i: usize) {
         let token = self.tokens[i];
         let before = i.checked_sub(1).map(|p| self.tokens[p]);
@@ -74,9 +78,9 @@ impl Layout<'_> {
     fn gaps(&mut self, start: usize, end: usize, next: usize) {
         for gap in gaps(&self.text[start..end]) {
             match gap {
-                Gap::Lines(count) if !self.out.is_empty() => self.break_lines(count),
-                Gap::Lines(_) => {}
-                Gap::Comment(comment) => {
+                TokenGap::Lines(count) if !self.out.is_empty() => self.break_lines(count),
+                TokenGap::Lines(_) => {}
+                TokenGap::Comment(comment) => {
                     if self.at_line_start() {
                         let level = self.blocks.level_of_comment(&self.tokens[next..]);
                         self.indent(level);
@@ -124,7 +128,7 @@ fn next_line(gap: &str, comment: &str) -> bool {
 }
 
 /// Takes the blanks between two tokens apart.
-fn gaps(text: &str) -> Vec<Gap<'_>> {
+fn gaps(text: &str) -> Vec<TokenGap<'_>> {
     let mut found = Vec::new();
     let mut rest = text;
     while let Some(at) = rest.find(|c: char| !matches!(c, ' ' | '\t' | '\r' | '\x0b' | '\x0c' | '\u{feff}')) {
@@ -138,11 +142,11 @@ fn gaps(text: &str) -> Vec<Gap<'_>> {
             if blank == 0 {
                 break;
             }
-            found.push(Gap::Lines(rest[..blank].matches('\n').count()));
+            found.push(TokenGap::Lines(rest[..blank].matches('\n').count()));
             rest = &rest[blank..];
             continue;
         };
-        found.push(Gap::Comment(&rest[..length]));
+        found.push(TokenGap::Comment(&rest[..length]));
         rest = &rest[length..];
     }
     found
@@ -150,7 +154,7 @@ fn gaps(text: &str) -> Vec<Gap<'_>> {
 
 /// Where in the nesting of classes, sections and blocks a token stands.
 #[derive(Default)]
-pub struct Blocks {
+pub struct BlockNesting {
     /// Levels around statements.
     pub depth: usize,
     /// The lines in which the open brackets of the present statement stand: those of one line indent once.
@@ -161,19 +165,19 @@ pub struct Blocks {
     /// `if` expressions that wait for their `else`.
     open_ifs: usize,
     /// What the present statement opens, and where the brackets were when it began.
-    opens: Option<Opening>,
+    opens: Option<BlockOpening>,
     started: bool,
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Opening {
+enum BlockOpening {
     /// `model M "text"`: the class's level begins after its name, modification and description.
     Class { header: usize },
     /// `if ... then`, `for ... loop`: the level begins after that word.
     Block,
 }
 
-impl Blocks {
+impl BlockNesting {
     /// The level of a token that begins a line.
     fn level_of(&self, rest: &[Token]) -> usize {
         let kind = rest[0].kind;
@@ -218,14 +222,14 @@ impl Blocks {
             TokenKind::Else if !begins => self.open_ifs = self.open_ifs.saturating_sub(1),
             TokenKind::Semicolon if self.brackets.is_empty() => self.next_statement(),
             TokenKind::Then | TokenKind::Loop
-                if self.opens == Some(Opening::Block) && self.open_ifs == 0 && self.brackets.is_empty() =>
+                if self.opens == Some(BlockOpening::Block) && self.open_ifs == 0 && self.brackets.is_empty() =>
             {
                 self.depth += 1;
                 self.next_statement();
             }
             _ => {}
         }
-        if let Some(Opening::Class { header }) = self.opens
+        if let Some(BlockOpening::Class { header }) = self.opens
             && i >= header
             && self.brackets.is_empty()
             && !continues_header(tokens[i + 1].kind)
@@ -248,9 +252,11 @@ impl Blocks {
             TokenKind::Else => self.between = true,
             TokenKind::Elseif | TokenKind::Elsewhen => {
                 self.depth = self.depth.saturating_sub(1);
-                self.opens = Some(Opening::Block);
+                self.opens = Some(BlockOpening::Block);
             }
-            TokenKind::If | TokenKind::For | TokenKind::When | TokenKind::While => self.opens = Some(Opening::Block),
+            TokenKind::If | TokenKind::For | TokenKind::When | TokenKind::While => {
+                self.opens = Some(BlockOpening::Block)
+            }
             kind if kind.is_element_prefix() => self.between = true,
             kind if kind.is_class_word() => self.begin_class(tokens, i),
             _ => {}
@@ -265,7 +271,7 @@ impl Blocks {
         }
         let short = tokens.get(at + 1).is_some_and(|t| t.kind == TokenKind::Equal);
         if tokens[at].kind == TokenKind::Ident && !short {
-            self.opens = Some(Opening::Class { header: at });
+            self.opens = Some(BlockOpening::Class { header: at });
         }
     }
 }

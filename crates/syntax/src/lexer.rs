@@ -7,7 +7,7 @@ use crate::diag::{Code, Diagnostic, FileId, Span};
 const MAX_UNCLOSED: usize = 20;
 
 /// The tokens of a text, the last of which is `Eof`.
-pub struct Lexed {
+pub struct TokenStream {
     /// The tokens in order.
     pub tokens: Vec<Token>,
     /// Strings, comments and quoted names that are not closed.
@@ -17,8 +17,8 @@ pub struct Lexed {
 }
 
 /// Splits a text of less than 4 GiB into tokens.
-pub fn lex(file: FileId, text: &str) -> Lexed {
-    let mut lexer = Lexer { file, text, bytes: text.as_bytes(), at: 0, out: Lexed::new(text.len()) };
+pub fn lex(file: FileId, text: &str) -> TokenStream {
+    let mut lexer = Lexer { file, text, bytes: text.as_bytes(), at: 0, out: TokenStream::new(text.len()) };
     if text.starts_with('\u{feff}') {
         lexer.at = '\u{feff}'.len_utf8();
     }
@@ -30,10 +30,10 @@ pub fn lex(file: FileId, text: &str) -> Lexed {
     lexer.out
 }
 
-impl Lexed {
-    fn new(bytes: usize) -> Lexed {
+impl TokenStream {
+    fn new(bytes: usize) -> TokenStream {
         // Model text has about one token in five bytes.
-        Lexed { tokens: Vec::with_capacity(bytes / 5 + 1), diagnostics: Vec::new(), truncated: false }
+        TokenStream { tokens: Vec::with_capacity(bytes / 5 + 1), diagnostics: Vec::new(), truncated: false }
     }
 }
 
@@ -42,7 +42,7 @@ struct Lexer<'a> {
     text: &'a str,
     bytes: &'a [u8],
     at: usize,
-    out: Lexed,
+    out: TokenStream,
 }
 
 impl Lexer<'_> {

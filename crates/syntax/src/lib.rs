@@ -11,12 +11,12 @@ mod print;
 pub mod symbol;
 pub mod token;
 
-use crate::diag::{Checked, Code, Diagnostic, FileId, Span};
+use crate::diag::{Code, Diagnostic, FileId, Span, StageResult};
 use parser::{Parser, class, expr};
 
 /// What could be made of a text.
 #[derive(Clone, Debug)]
-pub struct Parsed {
+pub struct ParseOutput {
     /// The classes; what could not be read is left out.
     pub tree: ast::StoredDefinition,
     /// Errors in the order of their places (E001 to E005); none means that the tree is the whole text.
@@ -27,24 +27,24 @@ pub struct Parsed {
 ///
 /// The nesting of brackets, blocks and classes is limited to 200, the height of an expression to 500 (E004), so the
 /// tree may be walked by recursion. Time is linear in the length of the text.
-pub fn parse(file: FileId, text: &str) -> Parsed {
+pub fn parse(file: FileId, text: &str) -> ParseOutput {
     if let Some(diagnostic) = not_text(file, text) {
-        return Parsed { tree: ast::StoredDefinition::default(), diagnostics: vec![diagnostic] };
+        return ParseOutput { tree: ast::StoredDefinition::default(), diagnostics: vec![diagnostic] };
     }
     let mut parser = Parser::new(file, text);
     let tree = class::stored_definition(&mut parser);
-    Parsed { tree, diagnostics: parser.into_diagnostics() }
+    ParseOutput { tree, diagnostics: parser.into_diagnostics() }
 }
 
 /// Reads a text that is one expression, such as a value given on the command line.
-pub fn parse_expression(file: FileId, text: &str) -> Checked<ast::Expr> {
+pub fn parse_expression(file: FileId, text: &str) -> StageResult<ast::Expr> {
     if let Some(diagnostic) = not_text(file, text) {
-        return Checked::failed(vec![diagnostic]);
+        return StageResult::failed(vec![diagnostic]);
     }
     let mut parser = Parser::new(file, text);
     let expr = expr::whole_expression(&mut parser);
     let diagnostics = parser.into_diagnostics();
-    if diagnostics.is_empty() { Checked { value: expr, diagnostics } } else { Checked::failed(diagnostics) }
+    if diagnostics.is_empty() { StageResult { value: expr, diagnostics } } else { StageResult::failed(diagnostics) }
 }
 
 /// Reads a text that is one dotted name, such as `Modelica.Constants.pi`; anything else gives nothing.
@@ -53,7 +53,7 @@ pub fn parse_path(file: FileId, text: &str) -> Option<ast::Path> {
 }
 
 /// Reads a text that is one reference, such as `tank[2].port.p`; anything else gives nothing.
-pub fn parse_reference(file: FileId, text: &str) -> Option<ast::Reference> {
+pub fn parse_reference(file: FileId, text: &str) -> Option<ast::ComponentReference> {
     not_text(file, text).is_none().then(|| parser::whole_reference(file, text)).flatten()
 }
 

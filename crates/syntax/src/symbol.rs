@@ -9,12 +9,12 @@ use std::sync::{LazyLock, RwLock};
 pub struct Symbol(u32);
 
 #[derive(Default)]
-struct Table {
+struct SymbolTable {
     index: HashMap<&'static str, u32>,
     names: Vec<&'static str>,
 }
 
-static TABLE: LazyLock<RwLock<Table>> = LazyLock::new(RwLock::default);
+static TABLE: LazyLock<RwLock<SymbolTable>> = LazyLock::new(RwLock::default);
 
 impl Symbol {
     /// The symbol of a word.

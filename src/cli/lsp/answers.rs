@@ -16,12 +16,12 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use super::super::files::modelica_below;
-use super::files::{Cache, Open};
+use super::files::{OpenTexts, ShippedFileCache};
 use super::texts;
-use bramah_editor::hints::{Facts, hints};
-use bramah_editor::messages::Message;
-use bramah_editor::navigate::{self, Declared, Place};
-use bramah_editor::{View, complete, hover, is_shipped, lines, outline, signature, tokens};
+use bramah_editor::hints::{ParameterHints, hints};
+use bramah_editor::messages::FileDiagnostic;
+use bramah_editor::navigate::{self, DeclarationSite, FileRange};
+use bramah_editor::{DocumentView, complete, hover, is_shipped, lines, outline, signature, tokens};
 use bramah_model::compile::{Request as Wanted, graph, runnable};
 use bramah_plot::network;
 use bramah_syntax::diag::FileId;
@@ -31,11 +31,11 @@ use bramah_syntax::format::format;
 const NETWORK: &str = "bramah/network";
 
 /// Texts and what is known about them.
-pub(super) struct Answers {
-    pub open: Open,
+pub(super) struct LspWorkspace {
+    pub open: OpenTexts,
     pub libraries: Vec<PathBuf>,
-    pub cache: Cache,
-    pub facts: Facts,
+    pub cache: ShippedFileCache,
+    pub facts: ParameterHints,
     /// Folders of the editor.
     roots: Vec<PathBuf>,
 }
@@ -65,7 +65,7 @@ pub(super) fn capabilities() -> Value {
     })
 }
 
-type Answer = Result<Value, String>;
+type LspAnswer = Result<Value, String>;
 
 /// Of the model whose network is drawn.
 #[derive(Deserialize)]
@@ -74,9 +74,9 @@ struct NetworkParams {
     model: Option<String>,
 }
 
-impl Answers {
-    pub fn new(params: &Value, mut libraries: Vec<PathBuf>) -> Answers {
-        let cache = Cache::new();
+impl LspWorkspace {
+    pub fn new(params: &Value, mut libraries: Vec<PathBuf>) -> LspWorkspace {
+        let cache = ShippedFileCache::new();
         let address = |v: &Value| serde_json::from_value::<Uri>(v.clone()).ok().and_then(|uri| cache.path(&uri));
         let folders = params["workspaceFolders"].as_array().into_iter().flatten();
         let mut roots: Vec<PathBuf> = folders.filter_map(|f| address(&f["uri"])).collect();
@@ -85,11 +85,11 @@ impl Answers {
         }
         let options = params["initializationOptions"]["libraries"].as_array().into_iter().flatten();
         libraries.extend(options.filter_map(|l| l.as_str()).map(PathBuf::from));
-        Answers { open: Open::default(), libraries, cache, facts: Facts::default(), roots }
+        LspWorkspace { open: OpenTexts::default(), libraries, cache, facts: ParameterHints::default(), roots }
     }
 
     /// `None` for what is not offered.
-    pub fn answer(&mut self, request: &Request, said: &BTreeMap<PathBuf, Vec<Message>>) -> Option<Answer> {
+    pub fn answer(&mut self, request: &Request, said: &BTreeMap<PathBuf, Vec<FileDiagnostic>>) -> Option<LspAnswer> {
         let params = &request.params;
         Some(match request.method.as_str() {
             request::Completion::METHOD => self.at_place(params, |_, view, at| {
@@ -133,7 +133,7 @@ impl Answers {
         })
     }
 
-    fn look<T>(&self, uri: &Uri, act: impl FnOnce(&mut View<'_, '_>) -> T) -> Option<T> {
+    fn look<T>(&self, uri: &Uri, act: impl FnOnce(&mut DocumentView<'_, '_>) -> T) -> Option<T> {
         let path = self.cache.path(uri)?;
         texts(&self.open, &self.libraries).look(&path, |mut view| act(&mut view))
     }
@@ -142,8 +142,8 @@ impl Answers {
     fn at_place<T: serde::Serialize>(
         &self,
         params: &Value,
-        act: impl FnOnce(&Self, &mut View<'_, '_>, u32) -> Option<T>,
-    ) -> Answer {
+        act: impl FnOnce(&Self, &mut DocumentView<'_, '_>, u32) -> Option<T>,
+    ) -> LspAnswer {
         let p: TextDocumentPositionParams = read(params)?;
         let found = self.look(&p.text_document.uri, |view| {
             let at = lines::offset(&view.text, p.position);
@@ -152,7 +152,11 @@ impl Answers {
         write(found.flatten())
     }
 
-    fn of_file<T: serde::Serialize>(&self, params: &Value, act: impl FnOnce(&Self, &mut View<'_, '_>) -> T) -> Answer {
+    fn of_file<T: serde::Serialize>(
+        &self,
+        params: &Value,
+        act: impl FnOnce(&Self, &mut DocumentView<'_, '_>) -> T,
+    ) -> LspAnswer {
         let uri: Uri = read(&params["textDocument"]["uri"])?;
         write(self.look(&uri, |view| act(self, view)))
     }
@@ -163,7 +167,7 @@ impl Answers {
         text.ok_or_else(|| format!("`{}` cannot be read", path.display()))
     }
 
-    fn go(&self, params: &Value, find: impl FnOnce(&mut View<'_, '_>, u32) -> Option<Place>) -> Answer {
+    fn go(&self, params: &Value, find: impl FnOnce(&mut DocumentView<'_, '_>, u32) -> Option<FileRange>) -> LspAnswer {
         let p: GotoDefinitionParams = read(params)?;
         let p = p.text_document_position_params;
         let place = self.look(&p.text_document.uri, |view| {
@@ -173,12 +177,12 @@ impl Answers {
         write(place.flatten().and_then(|place| self.location(&place)).map(GotoDefinitionResponse::Scalar))
     }
 
-    fn location(&self, place: &Place) -> Option<Location> {
+    fn location(&self, place: &FileRange) -> Option<Location> {
         Some(Location { uri: self.cache.uri(&place.path)?, range: place.lsp_range() })
     }
 
     /// What is declared at a place, and where it is used in the files of the user.
-    fn used(&self, uri: &Uri, position: Position) -> Option<(Declared, Vec<Place>)> {
+    fn used(&self, uri: &Uri, position: Position) -> Option<(DeclarationSite, Vec<FileRange>)> {
         let declared = self.look(uri, |view| {
             let at = lines::offset(&view.text, position);
             navigate::declared(view, at)
@@ -200,7 +204,7 @@ impl Answers {
         files
     }
 
-    fn references(&self, params: &Value) -> Answer {
+    fn references(&self, params: &Value) -> LspAnswer {
         let p: ReferenceParams = read(params)?;
         let at = &p.text_document_position;
         let Some((declared, mut places)) = self.used(&at.text_document.uri, at.position) else {
@@ -214,7 +218,7 @@ impl Answers {
         write(places.iter().filter_map(|place| self.location(place)).collect::<Vec<_>>())
     }
 
-    fn highlights(&self, params: &Value) -> Answer {
+    fn highlights(&self, params: &Value) -> LspAnswer {
         let p: TextDocumentPositionParams = read(params)?;
         let path = self.cache.path(&p.text_document.uri).ok_or("the address is not that of a file")?;
         let declared = self.look(&p.text_document.uri, |view| {
@@ -229,7 +233,7 @@ impl Answers {
         )
     }
 
-    fn rename(&self, params: &Value) -> Answer {
+    fn rename(&self, params: &Value) -> LspAnswer {
         let p: lsp_types::RenameParams = read(params)?;
         if !navigate::is_name(&p.new_name) {
             return Err(format!("`{}` is not a name: letters, digits and `_`, no keyword", p.new_name));
@@ -295,7 +299,7 @@ impl Answers {
         WorkspaceEdit { document_changes: Some(changes), ..WorkspaceEdit::default() }
     }
 
-    fn formatting(&self, params: &Value) -> Answer {
+    fn formatting(&self, params: &Value) -> LspAnswer {
         let uri: Uri = read(&params["textDocument"]["uri"])?;
         let text = self.text(&uri)?;
         let Ok(new_text) = format(FileId(0), &text) else { return Ok(Value::Null) };
@@ -306,7 +310,7 @@ impl Answers {
         write(vec![TextEdit { range, new_text }])
     }
 
-    fn actions(&self, params: &Value, said: &BTreeMap<PathBuf, Vec<Message>>) -> Answer {
+    fn actions(&self, params: &Value, said: &BTreeMap<PathBuf, Vec<FileDiagnostic>>) -> LspAnswer {
         let p: CodeActionParams = read(params)?;
         let path = self.cache.path(&p.text_document.uri).ok_or("the address is not that of a file")?;
         let mut actions = Vec::new();
@@ -328,7 +332,7 @@ impl Answers {
     }
 
     /// The picture of a model's network, also where ports are open yet.
-    fn network(&self, params: &Value) -> Answer {
+    fn network(&self, params: &Value) -> LspAnswer {
         let p: NetworkParams = read(params)?;
         let path = self.cache.path(&p.uri).ok_or("the address is not that of a file")?;
         let shipped =
@@ -357,6 +361,6 @@ fn read<P: DeserializeOwned>(params: &Value) -> Result<P, String> {
     serde_json::from_value(params.clone()).map_err(|e| e.to_string())
 }
 
-fn write(answer: impl serde::Serialize) -> Answer {
+fn write(answer: impl serde::Serialize) -> LspAnswer {
     serde_json::to_value(answer).map_err(|e| e.to_string())
 }

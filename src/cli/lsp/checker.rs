@@ -6,40 +6,40 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use crossbeam_channel::{Receiver, Sender, unbounded};
 
-use super::files::{Cache, Open};
+use super::files::{OpenTexts, ShippedFileCache};
 use super::texts;
-use bramah_editor::hints::Facts;
-use bramah_editor::messages::{Message, of_models};
+use bramah_editor::hints::ParameterHints;
+use bramah_editor::messages::{FileDiagnostic, of_models};
 use bramah_model::compile::STACK;
 
 /// What was found about a file.
-pub(super) struct Checked {
+pub(super) struct CheckResult {
     pub path: PathBuf,
     /// The texts that it is about.
-    pub open: Open,
-    pub messages: Vec<Message>,
+    pub open: OpenTexts,
+    pub messages: Vec<FileDiagnostic>,
     /// Values of parameters, of this file and of those before.
-    pub facts: Facts,
+    pub facts: ParameterHints,
 }
 
 /// The other end of the thread, which ends when this is dropped.
-pub(super) struct Checker {
-    jobs: Sender<Job>,
-    pub results: Receiver<Checked>,
-    newest: Newest,
+pub(super) struct BackgroundChecker {
+    jobs: Sender<CheckJob>,
+    pub results: Receiver<CheckResult>,
+    newest: NewestJobs,
 }
 
-struct Job {
+struct CheckJob {
     path: PathBuf,
-    open: Open,
+    open: OpenTexts,
     number: u64,
 }
 
 /// The number of the last job of each file: older ones are given up.
 #[derive(Clone, Default)]
-struct Newest(Arc<Mutex<BTreeMap<PathBuf, u64>>>);
+struct NewestJobs(Arc<Mutex<BTreeMap<PathBuf, u64>>>);
 
-impl Newest {
+impl NewestJobs {
     fn next(&self, path: &Path) -> u64 {
         let mut numbers = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let number = numbers.entry(path.to_path_buf()).or_default();
@@ -47,24 +47,24 @@ impl Newest {
         *number
     }
 
-    fn is(&self, job: &Job) -> bool {
+    fn is(&self, job: &CheckJob) -> bool {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&job.path) == Some(&job.number)
     }
 }
 
-impl Checker {
-    pub fn start(libraries: Vec<PathBuf>, cache: Cache) -> Checker {
-        let (jobs, inbox) = unbounded::<Job>();
+impl BackgroundChecker {
+    pub fn start(libraries: Vec<PathBuf>, cache: ShippedFileCache) -> BackgroundChecker {
+        let (jobs, inbox) = unbounded::<CheckJob>();
         let (outbox, results) = unbounded();
-        let newest = Newest::default();
+        let newest = NewestJobs::default();
         let known = newest.clone();
         let work = move || {
-            let mut facts = Facts::default();
+            let mut facts = ParameterHints::default();
             for job in inbox {
                 let wanted = || known.is(&job);
                 let messages = look(&job, &libraries, &cache, &mut facts, &wanted);
                 let checked =
-                    Checked { path: job.path.clone(), open: job.open.clone(), messages, facts: facts.clone() };
+                    CheckResult { path: job.path.clone(), open: job.open.clone(), messages, facts: facts.clone() };
                 if wanted() && outbox.send(checked).is_err() {
                     return;
                 }
@@ -72,14 +72,14 @@ impl Checker {
         };
         let thread = std::thread::Builder::new().stack_size(STACK).spawn(work);
         thread.expect("a thread can be started");
-        Checker { jobs, results, newest }
+        BackgroundChecker { jobs, results, newest }
     }
 
     /// Asks for a file; what is known about it comes through `results`.
-    pub fn ask(&self, path: PathBuf, open: Open) {
+    pub fn ask(&self, path: PathBuf, open: OpenTexts) {
         let number = self.newest.next(&path);
         // without the thread there are no messages, which is no reason to end
-        let _ = self.jobs.send(Job { path, open, number });
+        let _ = self.jobs.send(CheckJob { path, open, number });
     }
 
     /// Gives up what was asked for a file.
@@ -89,7 +89,13 @@ impl Checker {
 }
 
 /// A bug must not end the thread: the next edit gets another chance.
-fn look(job: &Job, libraries: &[PathBuf], cache: &Cache, facts: &mut Facts, wanted: &dyn Fn() -> bool) -> Vec<Message> {
+fn look(
+    job: &CheckJob,
+    libraries: &[PathBuf],
+    cache: &ShippedFileCache,
+    facts: &mut ParameterHints,
+    wanted: &dyn Fn() -> bool,
+) -> Vec<FileDiagnostic> {
     if !wanted() {
         return Vec::new();
     }

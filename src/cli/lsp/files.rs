@@ -8,17 +8,17 @@ use std::sync::Arc;
 use lsp_types::Uri;
 
 use bramah_editor::is_shipped;
-use bramah_model::shipped::Shipped;
+use bramah_model::shipped::ShippedWorld;
 use bramah_syntax::world::DiskWorld;
 use bramah_syntax::world::World;
 
 /// Texts that are open, over the disk. Cheap to copy.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Open {
+pub(super) struct OpenTexts {
     texts: Arc<BTreeMap<PathBuf, Arc<str>>>,
 }
 
-impl Open {
+impl OpenTexts {
     pub fn set(&mut self, path: PathBuf, text: &str) {
         Arc::make_mut(&mut self.texts).insert(path, text.into());
     }
@@ -36,7 +36,7 @@ impl Open {
     }
 }
 
-impl World for Open {
+impl World for OpenTexts {
     fn read(&self, path: &Path) -> Result<String, String> {
         self.get(path).map_or_else(|| DiskWorld.read(path), |text| Ok(text.to_owned()))
     }
@@ -48,14 +48,14 @@ impl World for Open {
 
 /// Where files that ship are laid for editors to show them.
 #[derive(Clone, Debug)]
-pub(super) struct Cache(PathBuf);
+pub(super) struct ShippedFileCache(PathBuf);
 
-impl Cache {
+impl ShippedFileCache {
     /// Below the user's folder for caches, by version.
-    pub fn new() -> Cache {
+    pub fn new() -> ShippedFileCache {
         let variable = |name: &str| std::env::var_os(name).filter(|v| !v.is_empty()).map(PathBuf::from);
         let caches = variable("XDG_CACHE_HOME").or_else(|| variable("HOME").map(|h| h.join(".cache")));
-        Cache(caches.unwrap_or_else(std::env::temp_dir).join("bramah").join(env!("CARGO_PKG_VERSION")))
+        ShippedFileCache(caches.unwrap_or_else(std::env::temp_dir).join("bramah").join(env!("CARGO_PKG_VERSION")))
     }
 
     /// The address of a file; one that ships is written to the cache first.
@@ -63,7 +63,7 @@ impl Cache {
         if !is_shipped(path) {
             return to_uri(path);
         }
-        let text = Shipped.read(path).ok()?;
+        let text = ShippedWorld.read(path).ok()?;
         let file = self.0.join(path);
         if std::fs::read_to_string(&file).ok().as_ref() != Some(&text) {
             std::fs::create_dir_all(file.parent()?).ok()?;

@@ -16,12 +16,12 @@ use lsp_types::notification::{self, Notification as _};
 use serde::de::DeserializeOwned;
 
 use super::request::folders;
-use super::{Ending, Failure};
-use answers::Answers;
+use super::{CommandFailure, CommandStatus};
+use answers::LspWorkspace;
 use bramah_editor::{lines, messages};
 use bramah_syntax::diag::Code;
-use checker::{Checked, Checker};
-use files::Open;
+use checker::{BackgroundChecker, CheckResult};
+use files::OpenTexts;
 
 /// Serve an editor: messages, completions, definitions, renaming and more, by the language server protocol
 #[derive(Args, Debug)]
@@ -40,58 +40,59 @@ pub(super) struct LspArgs {
     stdio: bool,
 }
 
-pub(super) fn run(args: &LspArgs) -> Result<Ending, Failure> {
+pub(super) fn run(args: &LspArgs) -> Result<CommandStatus, CommandFailure> {
     let (connection, threads) = Connection::stdio();
     let served = serve(&connection, folders(&args.library)?);
     drop(connection);
     let joined = threads.join();
-    let broken = |why: String| Failure::new(Code::FileAccess, format!("the connection to the editor broke: {why}"));
+    let broken =
+        |why: String| CommandFailure::new(Code::FileAccess, format!("the connection to the editor broke: {why}"));
     let ending = served.map_err(&broken)?;
     joined.map_err(|e| broken(e.to_string()))?;
     Ok(ending)
 }
 
 /// What the server knows.
-struct Server<'c> {
+struct LanguageServer<'c> {
     connection: &'c Connection,
-    answers: Answers,
-    checker: Checker,
+    answers: LspWorkspace,
+    checker: BackgroundChecker,
     /// What was said of each file that was checked.
-    said: std::collections::BTreeMap<PathBuf, Vec<messages::Message>>,
+    said: std::collections::BTreeMap<PathBuf, Vec<messages::FileDiagnostic>>,
 }
 
 /// The protocol wants 1 from a server that is ended without having been shut down.
-fn serve(connection: &Connection, libraries: Vec<PathBuf>) -> Result<Ending, String> {
+fn serve(connection: &Connection, libraries: Vec<PathBuf>) -> Result<CommandStatus, String> {
     let (id, params) = connection.initialize_start().map_err(|e| e.to_string())?;
-    let answers = Answers::new(&params, libraries);
+    let answers = LspWorkspace::new(&params, libraries);
     let ready = serde_json::json!({
         "capabilities": answers::capabilities(),
         "serverInfo": { "name": "bramah", "version": env!("CARGO_PKG_VERSION") },
     });
     connection.initialize_finish(id, ready).map_err(|e| e.to_string())?;
-    let checker = Checker::start(answers.libraries.clone(), answers.cache.clone());
-    let mut server = Server { connection, answers, checker, said: std::collections::BTreeMap::new() };
+    let checker = BackgroundChecker::start(answers.libraries.clone(), answers.cache.clone());
+    let mut server = LanguageServer { connection, answers, checker, said: std::collections::BTreeMap::new() };
     server.listen()
 }
 
-impl Server<'_> {
-    fn listen(&mut self) -> Result<Ending, String> {
+impl LanguageServer<'_> {
+    fn listen(&mut self) -> Result<CommandStatus, String> {
         let results = self.checker.results.clone();
         loop {
             select! {
                 recv(self.connection.receiver) -> message => match message {
                     Ok(Message::Request(request)) => {
                         if self.connection.handle_shutdown(&request).map_err(|e| e.to_string())? {
-                            return Ok(Ending::Fine);
+                            return Ok(CommandStatus::Fine);
                         }
                         let response = self.answer(request);
                         self.connection.sender.send(response.into()).map_err(|e| e.to_string())?;
                     }
-                    Ok(Message::Notification(n)) if n.method == notification::Exit::METHOD => return Ok(Ending::Wrong),
+                    Ok(Message::Notification(n)) if n.method == notification::Exit::METHOD => return Ok(CommandStatus::Wrong),
                     Ok(Message::Notification(notification)) => self.notice(&notification),
                     Ok(Message::Response(_)) => {}
                     // the editor has gone
-                    Err(_) => return Ok(Ending::Fine),
+                    Err(_) => return Ok(CommandStatus::Fine),
                 },
                 recv(results) -> checked => if let Ok(checked) = checked {
                     self.learn(checked);
@@ -166,7 +167,7 @@ impl Server<'_> {
         }
     }
 
-    fn learn(&mut self, checked: Checked) {
+    fn learn(&mut self, checked: CheckResult) {
         self.answers.facts = checked.facts;
         let current = checked.open.get(&checked.path) == self.answers.open.get(&checked.path);
         if current {
@@ -175,7 +176,7 @@ impl Server<'_> {
     }
 
     /// Publishes what is said of a file now, in every file that is or was concerned.
-    fn say(&mut self, of: &Path, found: Vec<messages::Message>) {
+    fn say(&mut self, of: &Path, found: Vec<messages::FileDiagnostic>) {
         let before = self.said.insert(of.to_path_buf(), found).unwrap_or_default();
         let now = self.said.get(of).into_iter().flatten();
         let mut concerned: Vec<PathBuf> = before.iter().chain(now).map(|m| m.path.clone()).collect();
@@ -214,6 +215,6 @@ fn apply(text: &mut String, change: &lsp_types::TextDocumentContentChangeEvent) 
 }
 
 /// The texts and what surrounds them, for one look.
-fn texts<'t>(open: &'t Open, libraries: &'t [PathBuf]) -> bramah_editor::Texts<'t> {
-    bramah_editor::Texts { world: open, libraries }
+fn texts<'t>(open: &'t OpenTexts, libraries: &'t [PathBuf]) -> bramah_editor::EditorWorkspace<'t> {
+    bramah_editor::EditorWorkspace { world: open, libraries }
 }

@@ -3,17 +3,17 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::model::described;
-use super::folder::Folder;
-use super::http::{Answer, Ask, Refusal};
-use super::jobs::{Job, Jobs, Made};
+use super::folder::ServerFolder;
+use super::http::{HttpRefusal, HttpRequest, HttpResponse};
+use super::jobs::{JobOutput, ServerJob, ServerJobs};
 use bramah_analysis::experiment::seconds;
 use bramah_circuit::Parameter;
 use bramah_circuit::Simulation;
 use bramah_model::compile::{Request, graph};
 use bramah_model::instance::Override;
-use bramah_plot::select::{Choice, Run, UnitSystem, figure, shown_unit, shown_values};
+use bramah_plot::select::{FigureOptions, LabelledTrajectory, UnitSystem, figure, shown_unit, shown_values};
 use bramah_plot::{html, network};
-use bramah_results::{Globs, Kind, Signal, number};
+use bramah_results::{GlobPatterns, Kind, Signal, number};
 use bramah_solve::{Control, Progress, missing_inputs};
 use bramah_syntax::diag::render::full;
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
@@ -23,7 +23,7 @@ use bramah_syntax::world::DiskWorld;
 const DIGITS: usize = 9;
 
 #[derive(Serialize)]
-struct Circuit {
+struct CircuitDescription {
     source: String,
     class: String,
     description: String,
@@ -31,13 +31,13 @@ struct Circuit {
     messages: String,
     start: f64,
     stop: f64,
-    parameters: Vec<Offered>,
-    variables: Vec<Named>,
-    inputs: Vec<Named>,
+    parameters: Vec<ParameterDescription>,
+    variables: Vec<VariableDescription>,
+    inputs: Vec<VariableDescription>,
 }
 
 #[derive(Serialize)]
-struct Named {
+struct VariableDescription {
     name: String,
     unit: String,
     shown_unit: String,
@@ -45,9 +45,9 @@ struct Named {
 }
 
 #[derive(Serialize)]
-struct Offered {
+struct ParameterDescription {
     #[serde(flatten)]
-    named: Named,
+    named: VariableDescription,
     kind: &'static str,
     literals: Vec<String>,
     value: String,
@@ -60,18 +60,18 @@ struct Offered {
 }
 
 /// What a circuit offers; its network also where it is wrong.
-pub(super) fn open(folder: &Folder, ask: &Ask) -> Result<Answer, Refusal> {
+pub(super) fn open(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
     let request = folder.request(ask.value("source"), ask.value("class"))?;
     let simulation = match Simulation::compile(&DiskWorld, &request) {
         Ok(simulation) => simulation,
         Err(error) => {
             let drawn = graph(&DiskWorld, &request).value.map(|(class, graph)| network::write(&graph, &class));
             let wrong = serde_json::json!({ "messages": error.full(), "picture": drawn.unwrap_or_default() });
-            return Ok(Answer::json(&wrong).with_status(422));
+            return Ok(HttpResponse::json(&wrong).with_status(422));
         }
     };
     let (settings, class) = (simulation.run_settings(), simulation.model().flat.class.clone());
-    Ok(Answer::json(&Circuit {
+    Ok(HttpResponse::json(&CircuitDescription {
         source: ask.value("source").to_owned(),
         description: described(&request, &class),
         picture: network::write(&simulation.model().graph, &class),
@@ -85,8 +85,8 @@ pub(super) fn open(folder: &Folder, ask: &Ask) -> Result<Answer, Refusal> {
     }))
 }
 
-fn named(signal: &Signal) -> Named {
-    Named {
+fn named(signal: &Signal) -> VariableDescription {
+    VariableDescription {
         name: signal.name.clone(),
         unit: signal.unit.clone(),
         shown_unit: shown_unit(signal).to_owned(),
@@ -94,7 +94,7 @@ fn named(signal: &Signal) -> Named {
     }
 }
 
-fn offered(parameter: &Parameter) -> Offered {
+fn offered(parameter: &Parameter) -> ParameterDescription {
     let signal = &parameter.signal;
     let shown = |value: f64| match &signal.kind {
         Kind::Boolean => (value != 0.0).to_string(),
@@ -108,7 +108,7 @@ fn offered(parameter: &Parameter) -> Offered {
         Kind::Boolean => ("boolean", Vec::new()),
         Kind::Enumeration(literals) => ("enumeration", literals.clone()),
     };
-    Offered {
+    ParameterDescription {
         named: named(signal),
         kind,
         literals,
@@ -122,7 +122,7 @@ fn offered(parameter: &Parameter) -> Offered {
 }
 
 #[derive(Deserialize)]
-struct Wanted {
+struct SimulationRequest {
     #[serde(default)]
     source: String,
     class: String,
@@ -137,11 +137,11 @@ struct Wanted {
 }
 
 /// Runs a circuit with values of its parameters.
-pub(super) fn run(folder: &Folder, ask: &Ask, jobs: &Jobs) -> Result<Answer, Refusal> {
-    let wanted: Wanted = ask.json()?;
+pub(super) fn run(folder: &ServerFolder, ask: &HttpRequest, jobs: &ServerJobs) -> Result<HttpResponse, HttpRefusal> {
+    let wanted: SimulationRequest = ask.json()?;
     let stop = match wanted.stop.trim() {
         "" => None,
-        text => Some(seconds(text).map_err(|why| Refusal::new(422, why))?),
+        text => Some(seconds(text).map_err(|why| HttpRefusal::new(422, why))?),
     };
     let given = |(name, value): (&String, &String)| Override { name: name.clone(), value: value.clone() };
     let overrides = wanted.set.iter().map(given).collect();
@@ -149,14 +149,19 @@ pub(super) fn run(folder: &Folder, ask: &Ask, jobs: &Jobs) -> Result<Answer, Ref
     jobs.start(move |job| simulated(&request, &wanted, stop, job))
 }
 
-fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -> Result<Made, String> {
+fn simulated(
+    request: &Request,
+    wanted: &SimulationRequest,
+    stop: Option<f64>,
+    job: &ServerJob,
+) -> Result<JobOutput, String> {
     job.at("compiling", None);
     let compiled = Simulation::compile(&DiskWorld, request);
     let mut simulation = compiled.map_err(|error| error.full())?;
     if let Some(stop) = stop {
         simulation.stop_time(stop);
     }
-    let patterns = Globs::new(&wanted.variables);
+    let patterns = GlobPatterns::new(&wanted.variables);
     all_given(&simulation)?;
     record(&mut simulation, &patterns)?;
     let (start, length) = (
@@ -175,8 +180,8 @@ fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -
     let units = if wanted.units == "engineering" { UnitSystem::Engineering } else { UnitSystem::AsGiven };
     units.apply(trajectory);
     let label = simulation.model().flat.class.clone();
-    let choice = Choice { variables: patterns, title: label.clone(), ..Choice::default() };
-    let drawn = figure(&[Run { label: &label, trajectory }], &choice);
+    let choice = FigureOptions { variables: patterns, title: label.clone(), ..FigureOptions::default() };
+    let drawn = figure(&[LabelledTrajectory { label: &label, trajectory }], &choice);
     let drawn = drawn.map_err(|why| format!("{messages}\nnothing to draw: {why}").trim().to_owned())?;
     let left = match drawn.left_out {
         0 => String::new(),
@@ -193,7 +198,7 @@ fn simulated(request: &Request, wanted: &Wanted, stop: Option<f64>, job: &Job) -
     );
     let messages = [messages, left, work].into_iter().filter(|m| !m.is_empty()).collect::<Vec<_>>().join("\n\n");
     let facts = wanted.set.iter().map(|(name, value)| (name.clone(), value.clone())).collect::<Vec<_>>();
-    Ok(Made { messages, page: html::write(&drawn.figure, &facts), files: Vec::new() })
+    Ok(JobOutput { messages, page: html::write(&drawn.figure, &facts), files: Vec::new() })
 }
 
 /// Every input has a value of its own; the page has fields for them.
@@ -204,7 +209,7 @@ fn all_given(simulation: &Simulation) -> Result<(), String> {
 }
 
 /// Records what matches the patterns; without any, what the simulation records by itself.
-fn record(simulation: &mut Simulation, patterns: &Globs) -> Result<(), String> {
+fn record(simulation: &mut Simulation, patterns: &GlobPatterns) -> Result<(), String> {
     if patterns.is_empty() {
         return Ok(());
     }

@@ -6,11 +6,11 @@ use std::sync::OnceLock;
 use serde::Serialize;
 
 use super::super::model::source;
-use super::super::{Failure, files};
+use super::super::{CommandFailure, files};
 use super::guard;
-use super::http::Refusal;
+use super::http::HttpRefusal;
 use bramah_model::compile::{Request, runnable};
-use bramah_model::shipped::Shipped;
+use bramah_model::shipped::ShippedWorld;
 use bramah_syntax::diag::render::full;
 use bramah_syntax::diag::{Code, Sources};
 use bramah_syntax::world::{DiskWorld, World};
@@ -21,44 +21,44 @@ const DEPTH: usize = 5;
 const MOST: usize = 2000;
 
 /// The folder.
-pub(super) struct Folder {
+pub(super) struct ServerFolder {
     root: PathBuf,
-    shipped: OnceLock<Vec<Listed>>,
+    shipped: OnceLock<Vec<CircuitListing>>,
 }
 
 /// What is in it.
 #[derive(Serialize)]
-pub(super) struct Contents<'a> {
+pub(super) struct FolderContents<'a> {
     folder: String,
     version: &'static str,
-    circuits: Vec<Listed>,
-    shipped: &'a [Listed],
+    circuits: Vec<CircuitListing>,
+    shipped: &'a [CircuitListing],
     studies: Vec<String>,
     recordings: Vec<String>,
-    troubles: Vec<Trouble>,
+    troubles: Vec<FileProblem>,
 }
 
 #[derive(Serialize)]
-struct Listed {
+struct CircuitListing {
     source: String,
     class: String,
     description: String,
 }
 
 #[derive(Serialize)]
-struct Trouble {
+struct FileProblem {
     source: String,
     messages: String,
 }
 
-impl Folder {
+impl ServerFolder {
     /// Paths in messages are relative to the folder, so the process works in it.
-    pub fn new(path: &Path) -> Result<Self, Failure> {
+    pub fn new(path: &Path) -> Result<Self, CommandFailure> {
         let root = path.canonicalize().map_err(|e| files::access(path, "read", &e))?;
         // of a file, its folder
         let root = if root.is_file() { root.parent().unwrap_or(&root).to_owned() } else { root };
         std::env::set_current_dir(&root).map_err(|e| files::access(path, "opened", &e))?;
-        Ok(Folder { root, shipped: OnceLock::new() })
+        Ok(ServerFolder { root, shipped: OnceLock::new() })
     }
 
     /// Its path.
@@ -67,20 +67,20 @@ impl Folder {
     }
 
     /// A path in it, from a name relative to it.
-    pub fn inside(&self, name: &str) -> Result<PathBuf, Refusal> {
+    pub fn inside(&self, name: &str) -> Result<PathBuf, HttpRefusal> {
         guard::inside(&self.root, name)
     }
 
     /// The text of a file in it.
-    pub fn text(&self, name: &str) -> Result<String, Refusal> {
+    pub fn text(&self, name: &str) -> Result<String, HttpRefusal> {
         let path = self.inside(name)?;
         let bytes = std::fs::read(path);
-        let bytes = bytes.map_err(|_| Refusal::new(404, format!("`{name}` cannot be read in this folder")))?;
+        let bytes = bytes.map_err(|_| HttpRefusal::new(404, format!("`{name}` cannot be read in this folder")))?;
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
     /// What to compile for a circuit that the page names: a file or package in the folder, or a class that ships.
-    pub fn request(&self, named: &str, class: &str) -> Result<Request, Refusal> {
+    pub fn request(&self, named: &str, class: &str) -> Result<Request, HttpRefusal> {
         let model = (!class.is_empty()).then(|| class.to_owned());
         if named.is_empty() {
             return Ok(Request { source: class.into(), ..Request::default() });
@@ -90,22 +90,22 @@ impl Folder {
     }
 
     /// Everything that the page can open.
-    pub fn contents(&self) -> Contents<'_> {
-        let mut found = Found::default();
+    pub fn contents(&self) -> FolderContents<'_> {
+        let mut found = FolderFiles::default();
         found.walk(Path::new(""), DEPTH);
         let (mut circuits, mut troubles) = (Vec::new(), Vec::new());
         for file in found.circuits {
             let request = Request { source: source(Path::new(&file)), ..Request::default() };
             match runnable(&DiskWorld, &request) {
-                Ok(all) => circuits.extend(all.into_iter().map(|r| Listed {
+                Ok(all) => circuits.extend(all.into_iter().map(|r| CircuitListing {
                     source: file.clone(),
                     class: r.class,
                     description: r.description,
                 })),
-                Err(why) => troubles.push(Trouble { source: file, messages: full(&Sources::default(), &why) }),
+                Err(why) => troubles.push(FileProblem { source: file, messages: full(&Sources::default(), &why) }),
             }
         }
-        Contents {
+        FolderContents {
             folder: self.root.display().to_string(),
             version: env!("CARGO_PKG_VERSION"),
             circuits,
@@ -118,17 +118,17 @@ impl Folder {
 }
 
 /// Models that ship with bramah to be run: those of `models`, and the examples of the library.
-fn shipped() -> Vec<Listed> {
+fn shipped() -> Vec<CircuitListing> {
     let mut all = Vec::new();
-    let mut roots = Shipped::roots();
+    let mut roots = ShippedWorld::roots();
     roots.sort_by_key(|root| !root.starts_with("models"));
     for root in roots {
-        for (name, _) in Shipped.list(&root).unwrap_or_default() {
+        for (name, _) in ShippedWorld.list(&root).unwrap_or_default() {
             let request = Request { source: root.join(name), ..Request::default() };
-            all.extend(runnable(&Shipped, &request).unwrap_or_default().into_iter().filter(|r| r.experiment));
+            all.extend(runnable(&ShippedWorld, &request).unwrap_or_default().into_iter().filter(|r| r.experiment));
         }
     }
-    let listed = |r: bramah_model::compile::Runnable| Listed {
+    let listed = |r: bramah_model::compile::RunnableModel| CircuitListing {
         source: String::new(),
         class: r.class,
         description: r.description,
@@ -138,13 +138,13 @@ fn shipped() -> Vec<Listed> {
 
 /// Files by what they are for.
 #[derive(Default)]
-struct Found {
+struct FolderFiles {
     circuits: Vec<String>,
     studies: Vec<String>,
     recordings: Vec<String>,
 }
 
-impl Found {
+impl FolderFiles {
     /// A folder with a `package.mo` is one circuit file with all in it; of studies and experiments, those that say
     /// `version` are studies.
     fn walk(&mut self, folder: &Path, depth: usize) {
@@ -184,6 +184,6 @@ fn is_study(path: &Path) -> bool {
 }
 
 /// Says that a name cannot be used.
-pub(super) fn unusable(name: &str, why: &str) -> Failure {
-    Failure::new(Code::FileAccess, format!("`{name}` {why}"))
+pub(super) fn unusable(name: &str, why: &str) -> CommandFailure {
+    CommandFailure::new(Code::FileAccess, format!("`{name}` {why}"))
 }

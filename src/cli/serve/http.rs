@@ -20,7 +20,7 @@ const ALONE: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src '
                      frame-ancestors 'self'; sandbox allow-scripts allow-downloads";
 
 /// A request.
-pub(super) struct Ask {
+pub(super) struct HttpRequest {
     /// It may change something.
     pub post: bool,
     /// Without query.
@@ -29,16 +29,16 @@ pub(super) struct Ask {
     body: Vec<u8>,
 }
 
-impl Ask {
+impl HttpRequest {
     /// A value of the query.
     pub fn value(&self, name: &str) -> &str {
         self.query.get(name).map_or("", String::as_str)
     }
 
     /// The body as JSON.
-    pub fn json<T: DeserializeOwned>(&self) -> Result<T, Refusal> {
+    pub fn json<T: DeserializeOwned>(&self) -> Result<T, HttpRefusal> {
         let read = serde_json::from_slice(&self.body);
-        read.map_err(|why| Refusal::new(400, format!("the request cannot be read: {why}")))
+        read.map_err(|why| HttpRefusal::new(400, format!("the request cannot be read: {why}")))
     }
 
     /// The body as text; letters of old encodings do no harm.
@@ -48,42 +48,42 @@ impl Ask {
 }
 
 /// An answer.
-pub(super) struct Answer {
+pub(super) struct HttpResponse {
     status: u16,
     kind: &'static str,
     policy: &'static str,
     body: String,
 }
 
-impl Answer {
+impl HttpResponse {
     fn new(kind: &'static str, policy: &'static str, body: impl Into<String>) -> Self {
-        Answer { status: 200, kind, policy, body: body.into() }
+        HttpResponse { status: 200, kind, policy, body: body.into() }
     }
 
     /// The page.
     pub fn page(text: &str) -> Self {
-        Answer::new("text/html; charset=utf-8", POLICY, text)
+        HttpResponse::new("text/html; charset=utf-8", POLICY, text)
     }
 
     /// A page made by a job, with a script of its own.
     pub fn report(text: String) -> Self {
-        Answer::new("text/html; charset=utf-8", ALONE, text)
+        HttpResponse::new("text/html; charset=utf-8", ALONE, text)
     }
 
     /// A style sheet.
     pub fn style(text: &str) -> Self {
-        Answer::new("text/css; charset=utf-8", POLICY, text)
+        HttpResponse::new("text/css; charset=utf-8", POLICY, text)
     }
 
     /// A script.
     pub fn script(text: &str) -> Self {
-        Answer::new("text/javascript; charset=utf-8", POLICY, text)
+        HttpResponse::new("text/javascript; charset=utf-8", POLICY, text)
     }
 
     /// Data.
     pub fn json(value: &impl Serialize) -> Self {
         let text = serde_json::to_string(value).expect("texts and numbers always serialize");
-        Answer::new("application/json", POLICY, text)
+        HttpResponse::new("application/json", POLICY, text)
     }
 
     /// The same with another status than 200.
@@ -95,44 +95,48 @@ impl Answer {
 
 /// An answer that says why not.
 #[derive(Debug)]
-pub(super) struct Refusal {
+pub(super) struct HttpRefusal {
     /// Of HTTP.
     pub status: u16,
     /// As on a terminal.
     pub messages: String,
 }
 
-impl Refusal {
+impl HttpRefusal {
     /// One sentence.
     pub fn new(status: u16, message: impl Into<String>) -> Self {
-        Refusal { status, messages: message.into() }
+        HttpRefusal { status, messages: message.into() }
     }
 
     /// What is wrong with the texts of the user.
     pub fn of(diagnostics: &[Diagnostic], sources: &Sources) -> Self {
-        Refusal { status: 422, messages: full(sources, diagnostics) }
+        HttpRefusal { status: 422, messages: full(sources, diagnostics) }
     }
 }
 
-impl From<super::Failure> for Refusal {
-    fn from(failure: super::Failure) -> Self {
-        Refusal::of(&failure.diagnostics, &Sources::default())
+impl From<super::CommandFailure> for HttpRefusal {
+    fn from(failure: super::CommandFailure) -> Self {
+        HttpRefusal::of(&failure.diagnostics, &Sources::default())
     }
 }
 
 #[derive(Serialize)]
-struct Messages<'a> {
+struct RefusalBody<'a> {
     messages: &'a str,
 }
 
 /// Answers a request that the guard lets in. A panic is an answer too, and the server goes on.
-pub(super) fn answer(mut request: Request, act: impl FnOnce(&Ask) -> Result<Answer, Refusal>, port: u16) {
+pub(super) fn answer(
+    mut request: Request,
+    act: impl FnOnce(&HttpRequest) -> Result<HttpResponse, HttpRefusal>,
+    port: u16,
+) {
     let answered = guard::allowed(&request, port).and_then(|()| read(&mut request)).and_then(|ask| {
-        let bug = |_| Refusal::new(500, "this is a bug of bramah; its terminal says more");
+        let bug = |_| HttpRefusal::new(500, "this is a bug of bramah; its terminal says more");
         catch_unwind(AssertUnwindSafe(|| act(&ask))).unwrap_or_else(|panic| Err(bug(panic)))
     });
-    let answer =
-        answered.unwrap_or_else(|why| Answer::json(&Messages { messages: &why.messages }).with_status(why.status));
+    let answer = answered
+        .unwrap_or_else(|why| HttpResponse::json(&RefusalBody { messages: &why.messages }).with_status(why.status));
     let headers = [
         ("Content-Type", answer.kind),
         ("Content-Security-Policy", answer.policy),
@@ -150,20 +154,20 @@ pub(super) fn answer(mut request: Request, act: impl FnOnce(&Ask) -> Result<Answ
     let _ = request.respond(response);
 }
 
-fn read(request: &mut Request) -> Result<Ask, Refusal> {
+fn read(request: &mut Request) -> Result<HttpRequest, HttpRefusal> {
     let post = match request.method() {
         Method::Get => false,
         Method::Post => true,
-        other => return Err(Refusal::new(405, format!("{other} is not answered"))),
+        other => return Err(HttpRefusal::new(405, format!("{other} is not answered"))),
     };
     let (path, query) = request.url().split_once('?').unwrap_or((request.url(), ""));
     let query = form_urlencoded::parse(query.as_bytes()).into_owned().collect();
     let path = path.to_owned();
     let mut body = Vec::new();
     let limited = &mut request.as_reader().take(guard::LARGEST + 1);
-    limited.read_to_end(&mut body).map_err(|why| Refusal::new(400, format!("the request broke off: {why}")))?;
+    limited.read_to_end(&mut body).map_err(|why| HttpRefusal::new(400, format!("the request broke off: {why}")))?;
     if body.len() as u64 > guard::LARGEST {
         return Err(guard::too_large());
     }
-    Ok(Ask { post, path, query, body })
+    Ok(HttpRequest { post, path, query, body })
 }

@@ -19,13 +19,13 @@ use clap::Args;
 use include_dir::{Dir, include_dir};
 use tiny_http::Server;
 
-use super::{Ending, Failure, files};
+use super::{CommandFailure, CommandStatus, files};
 use bramah_model::compile::STACK;
 use bramah_syntax::diag::{Code, Diagnostic};
-use folder::Folder;
-use http::{Answer, Ask, Refusal};
-use jobs::Jobs;
-use studies::Uploads;
+use folder::ServerFolder;
+use http::{HttpRefusal, HttpRequest, HttpResponse};
+use jobs::ServerJobs;
+use studies::UploadStore;
 
 /// The port where it is free and none is asked for.
 const PORT: u16 = 8737;
@@ -58,15 +58,15 @@ pub(super) struct ServeArgs {
 static PAGE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/cli/serve/page");
 
 /// What all requests share.
-struct Shared {
-    folder: Folder,
+struct ServerState {
+    folder: ServerFolder,
     port: u16,
-    jobs: Jobs,
-    uploads: Uploads,
+    jobs: ServerJobs,
+    uploads: UploadStore,
 }
 
-pub(super) fn run(args: &ServeArgs) -> Result<Ending, Failure> {
-    let folder = Folder::new(&args.folder)?;
+pub(super) fn run(args: &ServeArgs) -> Result<CommandStatus, CommandFailure> {
+    let folder = ServerFolder::new(&args.folder)?;
     let server = listen(args.port)?;
     let port = server.server_addr().to_ip().map_or(0, |a| a.port());
     let address = format!("http://127.0.0.1:{port}/");
@@ -74,17 +74,17 @@ pub(super) fn run(args: &ServeArgs) -> Result<Ending, Failure> {
     if args.open {
         open(&address);
     }
-    let shared = Arc::new(Shared { folder, port, jobs: Jobs::default(), uploads: Uploads::default() });
+    let shared = Arc::new(ServerState { folder, port, jobs: ServerJobs::default(), uploads: UploadStore::default() });
     let server = Arc::new(server);
     let workers: Vec<_> = (0..THREADS).filter_map(|_| worker(&server, &shared)).collect();
     if workers.is_empty() {
-        return Err(Failure::new(Code::FileAccess, "no thread can be started"));
+        return Err(CommandFailure::new(Code::FileAccess, "no thread can be started"));
     }
     workers.into_iter().for_each(|w| drop(w.join()));
-    Ok(Ending::Fine)
+    Ok(CommandStatus::Fine)
 }
 
-fn worker(server: &Arc<Server>, shared: &Arc<Shared>) -> Option<std::thread::JoinHandle<()>> {
+fn worker(server: &Arc<Server>, shared: &Arc<ServerState>) -> Option<std::thread::JoinHandle<()>> {
     let (server, shared) = (server.clone(), shared.clone());
     let serve = move || {
         while let Ok(request) = server.recv() {
@@ -94,7 +94,7 @@ fn worker(server: &Arc<Server>, shared: &Arc<Shared>) -> Option<std::thread::Joi
     std::thread::Builder::new().stack_size(STACK).spawn(serve).ok()
 }
 
-fn listen(port: Option<u16>) -> Result<Server, Failure> {
+fn listen(port: Option<u16>) -> Result<Server, CommandFailure> {
     let at = |port| Server::http(SocketAddr::from((Ipv4Addr::LOCALHOST, port)));
     let tried = match port {
         Some(port) => at(port),
@@ -113,10 +113,10 @@ fn open(address: &str) {
     let _ = Command::new(program).arg(address).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
 }
 
-fn answer(shared: &Arc<Shared>, ask: &Ask) -> Result<Answer, Refusal> {
-    let Shared { folder, jobs, uploads, .. } = &**shared;
+fn answer(shared: &Arc<ServerState>, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
+    let ServerState { folder, jobs, uploads, .. } = &**shared;
     match (ask.post, ask.path.as_str()) {
-        (false, "/api/folder") => Ok(Answer::json(&folder.contents())),
+        (false, "/api/folder") => Ok(HttpResponse::json(&folder.contents())),
         (false, "/api/circuit") => circuits::open(folder, ask),
         (true, "/api/run") => circuits::run(folder, ask, jobs),
         (false, "/api/job") => jobs.seen(ask),
@@ -134,18 +134,18 @@ fn answer(shared: &Arc<Shared>, ask: &Ask) -> Result<Answer, Refusal> {
     }
 }
 
-fn nothing(path: &str) -> Refusal {
-    Refusal::new(404, format!("there is nothing at `{path}`"))
+fn nothing(path: &str) -> HttpRefusal {
+    HttpRefusal::new(404, format!("there is nothing at `{path}`"))
 }
 
 /// A file of the page.
-fn page(path: &str) -> Option<Answer> {
+fn page(path: &str) -> Option<HttpResponse> {
     let name = if path == "/" { "index.html" } else { path.strip_prefix('/')? };
     let text = PAGE.get_file(name)?.contents_utf8()?;
     match Path::new(name).extension()?.to_str()? {
-        "html" => Some(Answer::page(text)),
-        "css" => Some(Answer::style(text)),
-        "js" => Some(Answer::script(text)),
+        "html" => Some(HttpResponse::page(text)),
+        "css" => Some(HttpResponse::style(text)),
+        "js" => Some(HttpResponse::script(text)),
         _ => None,
     }
 }

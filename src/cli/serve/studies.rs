@@ -9,15 +9,15 @@ use std::time::Duration;
 use serde::{Deserialize, Serialize};
 
 use super::super::files;
-use super::folder::{Folder, unusable};
-use super::http::{Answer, Ask, Refusal};
-use super::jobs::{File, Job, Jobs, Made};
-use bramah_analysis::study::{Amount, Role, Study, parse};
-use bramah_gap::study::{Question, Unusable, question};
+use super::folder::{ServerFolder, unusable};
+use super::http::{HttpRefusal, HttpRequest, HttpResponse};
+use super::jobs::{DownloadFile, JobOutput, ServerJob, ServerJobs};
+use bramah_analysis::study::{Amount, RecordingRole, Study, parse};
+use bramah_gap::study::{DiagnosisStudy, StudyError, question};
 use bramah_gap::{Budget, DiagnoseOptions, Diagnosis};
 use bramah_plot::html;
 use bramah_results::recording::column_names;
-use bramah_results::{Strictness, read_csv};
+use bramah_results::{ReadStrictness, read_csv};
 use bramah_syntax::diag::render::full;
 use bramah_syntax::diag::{Code, Diagnostic, Sources};
 use bramah_syntax::world::{DiskWorld, MemoryWorld, Overlay};
@@ -27,29 +27,29 @@ const STUDY: &str = "study.toml";
 
 /// Recordings that were uploaded and are not in the folder.
 #[derive(Default)]
-pub(super) struct Uploads {
+pub(super) struct UploadStore {
     files: Mutex<BTreeMap<String, String>>,
 }
 
 #[derive(Serialize)]
-struct Columns {
+struct RecordingColumns {
     name: String,
     rows: usize,
     time: String,
     start: f64,
     end: f64,
-    columns: Vec<Column>,
+    columns: Vec<RecordingColumn>,
 }
 
 #[derive(Serialize)]
-struct Column {
+struct RecordingColumn {
     name: String,
     unit: String,
 }
 
-impl Uploads {
+impl UploadStore {
     /// Takes a recording.
-    pub fn take(&self, ask: &Ask) -> Result<Answer, Refusal> {
+    pub fn take(&self, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
         let name = ask.value("name").to_owned();
         if name.is_empty() || name.contains(['/', '\\']) || !name.to_lowercase().ends_with(".csv") {
             return Err(unusable(&name, "is no name of a recording: it ends in `.csv` and names no folder").into());
@@ -57,18 +57,18 @@ impl Uploads {
         let text = ask.text();
         let columns = columns(&name, &text)?;
         self.files().insert(name, text);
-        Ok(Answer::json(&columns))
+        Ok(HttpResponse::json(&columns))
     }
 
     /// The columns of a recording, uploaded or in the folder.
-    pub fn columns(&self, folder: &Folder, ask: &Ask) -> Result<Answer, Refusal> {
+    pub fn columns(&self, folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
         let name = ask.value("name");
         let uploaded = self.files().get(name).cloned();
         let text = match uploaded {
             Some(text) => text,
             None => folder.text(name)?,
         };
-        Ok(Answer::json(&columns(name, &text)?))
+        Ok(HttpResponse::json(&columns(name, &text)?))
     }
 
     fn files(&self) -> MutexGuard<'_, BTreeMap<String, String>> {
@@ -76,32 +76,32 @@ impl Uploads {
     }
 }
 
-fn columns(name: &str, text: &str) -> Result<Columns, Refusal> {
+fn columns(name: &str, text: &str) -> Result<RecordingColumns, HttpRefusal> {
     let mut sources = Sources::default();
     let file = sources.add(name.to_owned(), text.to_owned());
-    let read = read_csv(&sources, file, None, Strictness::Result);
-    let Some(found) = read.value else { return Err(Refusal::of(&read.diagnostics, &sources)) };
+    let read = read_csv(&sources, file, None, ReadStrictness::Result);
+    let Some(found) = read.value else { return Err(HttpRefusal::of(&read.diagnostics, &sources)) };
     let is_time = |n: &String| found.index(n).is_none();
-    Ok(Columns {
+    Ok(RecordingColumns {
         name: name.to_owned(),
         rows: found.times.len(),
         time: column_names(text).into_iter().find(is_time).unwrap_or_default(),
         start: found.times.first().copied().unwrap_or(0.0),
         end: found.times.last().copied().unwrap_or(0.0),
-        columns: found.signals.into_iter().map(|s| Column { name: s.name, unit: s.unit }).collect(),
+        columns: found.signals.into_iter().map(|s| RecordingColumn { name: s.name, unit: s.unit }).collect(),
     })
 }
 
 /// The text of a study in the folder, and the folder that its paths begin in.
-pub(super) fn text(folder: &Folder, ask: &Ask) -> Result<Answer, Refusal> {
+pub(super) fn text(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
     let file = ask.value("file");
     let text = folder.text(file)?;
     let within = Path::new(file).parent().unwrap_or(Path::new("")).display().to_string();
-    Ok(Answer::json(&serde_json::json!({ "text": text, "folder": within })))
+    Ok(HttpResponse::json(&serde_json::json!({ "text": text, "folder": within })))
 }
 
 #[derive(Deserialize)]
-struct Text {
+struct StudyText {
     text: String,
     #[serde(default)]
     folder: String,
@@ -109,18 +109,18 @@ struct Text {
 
 /// A study as the page's form has it.
 #[derive(Serialize)]
-struct Form {
+struct StudyForm {
     model: String,
     class: String,
-    inputs: Vec<Input>,
-    signals: Vec<Signal>,
-    recordings: Vec<Recording>,
-    parameters: Vec<Parameter>,
-    effects: Effects,
+    inputs: Vec<InputForm>,
+    signals: Vec<SignalForm>,
+    recordings: Vec<RecordingForm>,
+    parameters: Vec<ParameterForm>,
+    effects: EffectsForm,
 }
 
 #[derive(Serialize)]
-struct Input {
+struct InputForm {
     name: String,
     column: String,
     unit: String,
@@ -129,7 +129,7 @@ struct Input {
 }
 
 #[derive(Serialize)]
-struct Signal {
+struct SignalForm {
     name: String,
     variable: String,
     column: String,
@@ -140,7 +140,7 @@ struct Signal {
 }
 
 #[derive(Serialize)]
-struct Recording {
+struct RecordingForm {
     file: String,
     role: &'static str,
     time: String,
@@ -150,7 +150,7 @@ struct Recording {
 }
 
 #[derive(Serialize)]
-struct Parameter {
+struct ParameterForm {
     name: String,
     entry: &'static str,
     sigma: String,
@@ -159,25 +159,25 @@ struct Parameter {
 }
 
 #[derive(Serialize)]
-struct Effects {
+struct EffectsForm {
     include: Vec<String>,
     exclude: Vec<String>,
     places: Vec<String>,
     folder: String,
 }
 
-impl Form {
+impl StudyForm {
     fn of(study: Study) -> Self {
         let amount = |a: Option<Amount>| a.map_or_else(String::new, |a| a.to_string());
-        let role = |role| if role == Role::Train { "train" } else { "held" };
+        let role = |role| if role == RecordingRole::Train { "train" } else { "held" };
         let kind = |measured| if measured { "measured" } else { "command" };
-        Form {
+        StudyForm {
             model: study.model.unwrap_or_default(),
             class: study.class.unwrap_or_default(),
             inputs: study
                 .inputs
                 .into_iter()
-                .map(|i| Input {
+                .map(|i| InputForm {
                     name: i.name,
                     column: i.column,
                     unit: i.unit.unwrap_or_default(),
@@ -188,7 +188,7 @@ impl Form {
             signals: study
                 .signals
                 .into_iter()
-                .map(|s| Signal {
+                .map(|s| SignalForm {
                     name: s.name,
                     variable: s.variable,
                     column: s.column,
@@ -201,7 +201,7 @@ impl Form {
             recordings: study
                 .recordings
                 .into_iter()
-                .map(|r| Recording {
+                .map(|r| RecordingForm {
                     file: r.file,
                     role: role(r.role),
                     time: r.time.unwrap_or_default(),
@@ -213,7 +213,7 @@ impl Form {
             parameters: study
                 .parameters
                 .into_iter()
-                .map(|p| Parameter {
+                .map(|p| ParameterForm {
                     name: p.name,
                     entry: if p.exact { "exact" } else { "" },
                     sigma: amount(p.sigma),
@@ -221,7 +221,7 @@ impl Form {
                     max: amount(p.max),
                 })
                 .collect(),
-            effects: Effects {
+            effects: EffectsForm {
                 include: study.effects.include,
                 exclude: study.effects.exclude,
                 places: study.effects.places,
@@ -232,31 +232,41 @@ impl Form {
 }
 
 /// Reads the text of a study into the page's form.
-pub(super) fn read(folder: &Folder, ask: &Ask) -> Result<Answer, Refusal> {
-    let given: Text = ask.json()?;
+pub(super) fn read(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
+    let given: StudyText = ask.json()?;
     let mut sources = Sources::default();
-    Ok(Answer::json(&Form::of(parsed(folder, &given, &mut sources)?)))
+    Ok(HttpResponse::json(&StudyForm::of(parsed(folder, &given, &mut sources)?)))
 }
 
-fn parsed(folder: &Folder, given: &Text, sources: &mut Sources) -> Result<Study, Refusal> {
+fn parsed(folder: &ServerFolder, given: &StudyText, sources: &mut Sources) -> Result<Study, HttpRefusal> {
     folder.inside(&given.folder)?;
     let file = sources.add(Path::new(&given.folder).join(STUDY).display().to_string(), given.text.clone());
     let checked = parse(sources, file);
-    checked.value.ok_or_else(|| Refusal::of(&checked.diagnostics, sources))
+    checked.value.ok_or_else(|| HttpRefusal::of(&checked.diagnostics, sources))
 }
 
 /// Puts model and recordings side by side.
-pub(super) fn compare(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Jobs) -> Result<Answer, Refusal> {
+pub(super) fn compare(
+    folder: &ServerFolder,
+    ask: &HttpRequest,
+    uploads: &UploadStore,
+    jobs: &ServerJobs,
+) -> Result<HttpResponse, HttpRefusal> {
     begin(folder, ask, uploads, jobs, |question, sources, job| {
         job.at("simulating along the recordings", None);
         let warnings = full(sources, &question.diagnostics);
         let figure = question.compared().map_err(|d| full(sources, &d))?;
-        Ok(Made { messages: warnings, page: html::write(&figure, &[]), files: Vec::new() })
+        Ok(JobOutput { messages: warnings, page: html::write(&figure, &[]), files: Vec::new() })
     })
 }
 
 /// Diagnoses the gap.
-pub(super) fn diagnose(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Jobs) -> Result<Answer, Refusal> {
+pub(super) fn diagnose(
+    folder: &ServerFolder,
+    ask: &HttpRequest,
+    uploads: &UploadStore,
+    jobs: &ServerJobs,
+) -> Result<HttpResponse, HttpRefusal> {
     begin(folder, ask, uploads, jobs, |question, sources, job| {
         let held = question.held(None, sources).map_err(|d| full(sources, &d))?;
         let mut progress = |stage: bramah_gap::Stage| {
@@ -270,25 +280,27 @@ pub(super) fn diagnose(folder: &Folder, ask: &Ask, uploads: &Uploads, jobs: &Job
         diagnosis.took(job.seconds());
         let report = diagnosis.report();
         let verdict = serde_json::to_string_pretty(diagnosis.verdict()).expect("numbers and texts always serialize");
-        let mut files =
-            vec![File { name: "verdict.json", text: verdict }, File { name: "report.html", text: report.clone() }];
+        let mut files = vec![
+            DownloadFile { name: "verdict.json", text: verdict },
+            DownloadFile { name: "report.html", text: report.clone() },
+        ];
         let fixed = diagnosis.corrected();
-        files.extend(fixed.value.map(|text| File { name: "fixed.mo", text }));
+        files.extend(fixed.value.map(|text| DownloadFile { name: "fixed.mo", text }));
         let warnings = [diagnosis.diagnostics(), &fixed.diagnostics].concat();
         let messages = format!("{}\n\n{}", full(sources, &warnings), diagnosis.words());
-        Ok(Made { messages: messages.trim().to_owned(), page: report, files })
+        Ok(JobOutput { messages: messages.trim().to_owned(), page: report, files })
     })
 }
 
 /// Begins a job on the question that a study asks, with uploaded recordings laid over the folder of the study.
 fn begin(
-    folder: &Folder,
-    ask: &Ask,
-    uploads: &Uploads,
-    jobs: &Jobs,
-    work: impl FnOnce(Question<'_>, &mut Sources, &Job) -> Result<Made, String> + Send + 'static,
-) -> Result<Answer, Refusal> {
-    let given: Text = ask.json()?;
+    folder: &ServerFolder,
+    ask: &HttpRequest,
+    uploads: &UploadStore,
+    jobs: &ServerJobs,
+    work: impl FnOnce(DiagnosisStudy<'_>, &mut Sources, &ServerJob) -> Result<JobOutput, String> + Send + 'static,
+) -> Result<HttpResponse, HttpRefusal> {
+    let given: StudyText = ask.json()?;
     let mut sources = Sources::default();
     let study = parsed(folder, &given, &mut sources)?;
     stays_inside(folder, &study)?;
@@ -301,7 +313,7 @@ fn begin(
         let world = Overlay { base: &DiskWorld, files };
         match question(&world, &study, None, &mut sources) {
             Ok(question) => work(question, &mut sources, job),
-            Err(Unusable { diagnostics, sources: of_model, .. }) => {
+            Err(StudyError { diagnostics, sources: of_model, .. }) => {
                 Err(full(of_model.as_ref().unwrap_or(&sources), &diagnostics))
             }
         }
@@ -309,7 +321,7 @@ fn begin(
 }
 
 /// Files that a study names lie in the folder that is served.
-fn stays_inside(folder: &Folder, study: &Study) -> Result<(), Refusal> {
+fn stays_inside(folder: &ServerFolder, study: &Study) -> Result<(), HttpRefusal> {
     let files = study.recordings.iter().map(|r| &r.file).chain(&study.model).chain(&study.effects.folder);
     for file in files {
         folder.inside(&lexical(&study.folder.join(file)))?;
@@ -334,7 +346,7 @@ fn lexical(path: &Path) -> String {
 }
 
 #[derive(Deserialize)]
-struct Save {
+struct SaveRequest {
     file: String,
     text: String,
     #[serde(default)]
@@ -342,13 +354,17 @@ struct Save {
 }
 
 /// Writes a study and the uploaded recordings that it names.
-pub(super) fn save(folder: &Folder, ask: &Ask, uploads: &Uploads) -> Result<Answer, Refusal> {
-    let Save { file, text, replace } = ask.json()?;
+pub(super) fn save(
+    folder: &ServerFolder,
+    ask: &HttpRequest,
+    uploads: &UploadStore,
+) -> Result<HttpResponse, HttpRefusal> {
+    let SaveRequest { file, text, replace } = ask.json()?;
     if !file.to_lowercase().ends_with(".toml") {
         return Err(unusable(&file, "is no name of a study: it ends in `.toml`").into());
     }
     let within = Path::new(&file).parent().unwrap_or(Path::new(""));
-    let given = Text { text, folder: within.display().to_string() };
+    let given = StudyText { text, folder: within.display().to_string() };
     let study = parsed(folder, &given, &mut Sources::default())?;
     let mut written = vec![(file.clone(), given.text.clone())];
     for recording in &study.recordings {
@@ -359,7 +375,7 @@ pub(super) fn save(folder: &Folder, ask: &Ask, uploads: &Uploads) -> Result<Answ
         for (name, text) in &written {
             if std::fs::read(folder.inside(name)?).is_ok_and(|there| there != text.as_bytes()) {
                 let d = Diagnostic::new(Code::FileAccess, format!("`{name}` is there already, with other content"));
-                return Err(Refusal { status: 409, messages: full(&Sources::default(), &[d]) });
+                return Err(HttpRefusal { status: 409, messages: full(&Sources::default(), &[d]) });
             }
         }
     }
@@ -367,5 +383,5 @@ pub(super) fn save(folder: &Folder, ask: &Ask, uploads: &Uploads) -> Result<Answ
         files::write(&folder.inside(name)?, text.as_bytes())?;
     }
     let names: Vec<&String> = written.iter().map(|w| &w.0).collect();
-    Ok(Answer::json(&serde_json::json!({ "written": names })))
+    Ok(HttpResponse::json(&serde_json::json!({ "written": names })))
 }

@@ -3,7 +3,7 @@
 
 /// An autoregression of one order.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Order {
+pub struct AutoregressionOrder {
     /// The last partial autocorrelation.
     pub partial: f64,
     /// Variance of what the values before do not tell.
@@ -12,7 +12,7 @@ pub struct Order {
 
 /// Mean square of all series, and the autoregressions of the orders 1 to `most` that they share; fewer where nothing is
 /// left to tell. Partial autocorrelations stay within `limit`.
-pub fn orders<S: AsRef<[f64]>>(series: &[S], most: usize, limit: f64) -> (f64, Vec<Order>) {
+pub fn orders<S: AsRef<[f64]>>(series: &[S], most: usize, limit: f64) -> (f64, Vec<AutoregressionOrder>) {
     let rows: usize = series.iter().map(|s| s.as_ref().len()).sum();
     let product = |lag: usize| {
         let one = |s: &S| s.as_ref().iter().zip(s.as_ref().iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>();
@@ -29,7 +29,7 @@ pub fn orders<S: AsRef<[f64]>>(series: &[S], most: usize, limit: f64) -> (f64, V
         let partial = ((correlations[order] - predicted) / power).clamp(-limit, limit);
         coefficients = longer(&coefficients, partial);
         power *= 1.0 - partial * partial;
-        found.push(Order { partial, power });
+        found.push(AutoregressionOrder { partial, power });
     }
     (correlations[0], found)
 }

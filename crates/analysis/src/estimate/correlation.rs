@@ -4,7 +4,7 @@
 const UNCORRELATED: f64 = 0.05;
 
 /// Integrated autocorrelation time in samples, at least 1: 1 + 2 sum rho_k up to the first rho_k below
-/// [`UNCORRELATED`] (Sokal, Monte Carlo methods in statistical mechanics, 1997, 3). N samples count as N over this many
+/// `UNCORRELATED` (Sokal, Monte Carlo methods in statistical mechanics, 1997, 3). N samples count as N over this many
 /// independent ones. The mean is not taken out: a constant error is an error. Samples without a value are left out.
 pub fn time(errors: &[f64]) -> f64 {
     let known: Vec<f64> = errors.iter().copied().filter(|e| e.is_finite()).collect();

@@ -7,4 +7,4 @@ pub mod correlation;
 mod quasi_newton;
 mod spread;
 
-pub use spread::{Linearised, Series, spread};
+pub use spread::{LinearizedEstimate, ResidualSeries, spread};

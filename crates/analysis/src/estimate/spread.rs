@@ -13,7 +13,7 @@ use std::ops::Range;
 
 /// The residuals of one signal along one recording.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Series {
+pub struct ResidualSeries {
     /// Index of the recording.
     pub recording: usize,
     /// Index of the signal.
@@ -24,16 +24,16 @@ pub struct Series {
 
 /// An estimate by weighed least squares with its sensitivities.
 #[derive(Clone, Copy, Debug)]
-pub struct Linearised<'a> {
+pub struct LinearizedEstimate<'a> {
     /// Derivatives of the residual by the unknowns. Rows of data come first, then what is known beforehand.
     pub jacobian: &'a DMatrix<f64>,
     /// The residual: model minus measurement over the deviation by which it counts.
     pub residual: &'a DVector<f64>,
     /// The rows of data.
-    pub series: &'a [Series],
+    pub series: &'a [ResidualSeries],
 }
 
-impl Linearised<'_> {
+impl LinearizedEstimate<'_> {
     /// Rows of data.
     fn data(&self) -> usize {
         self.series.iter().map(|s| s.rows.end).max().unwrap_or(0)
@@ -41,27 +41,29 @@ impl Linearised<'_> {
 }
 
 /// What the errors say about the unknowns of a fit.
-pub struct Spread<'a> {
+pub struct EstimateCovariance<'a> {
     /// Covariance of the unknowns.
     pub covariance: DMatrix<f64>,
     /// What it would be if the errors were white and as large as they are weighed.
     pub plain: DMatrix<f64>,
     /// The models of the errors; nothing where no model can be found.
-    models: Option<Models<'a>>,
+    models: Option<NoiseModels<'a>>,
 }
 
 /// Models of the errors at their likeliest.
-struct Models<'a> {
-    colour: Colour<'a>,
+struct NoiseModels<'a> {
+    colour: ColouredNoise<'a>,
     at: Vec<f64>,
     /// What keeps the information solvable.
     small: f64,
 }
 
-impl Spread<'_> {
+impl EstimateCovariance<'_> {
     /// Per unknown the degrees of freedom of its variance: a white series has as many as samples, nearly.
     pub fn degrees(&self) -> Vec<f64> {
-        let Some(Models { colour, at, small }) = &self.models else { return vec![f64::INFINITY; self.plain.nrows()] };
+        let Some(NoiseModels { colour, at, small }) = &self.models else {
+            return vec![f64::INFINITY; self.plain.nrows()];
+        };
         let variances = |at: &[f64]| (&self.plain * colour.scores(at) * &self.plain).diagonal();
         colour.degrees(at, *small, variances)
     }
@@ -80,7 +82,7 @@ const STEP: f64 = 1e-3;
 
 /// The covariance of an estimate by weighed least squares whose errors are coloured: the spread that the models of the
 /// errors say, between two inverses of the information.
-pub fn spread(estimate: Linearised<'_>) -> Spread<'_> {
+pub fn spread(estimate: LinearizedEstimate<'_>) -> EstimateCovariance<'_> {
     let (jacobian, unknowns) = (estimate.jacobian, estimate.jacobian.ncols());
     let mut information = jacobian.tr_mul(jacobian);
     // the rows of data alone: conditions between pieces weigh much more
@@ -90,23 +92,23 @@ pub fn spread(estimate: Linearised<'_>) -> Spread<'_> {
     (0..unknowns).for_each(|j| information[(j, j)] += small);
     let nothing = || DMatrix::from_element(unknowns, unknowns, f64::INFINITY);
     let Some(plain) = information.cholesky().map(|c| c.inverse()) else {
-        return Spread { covariance: nothing(), plain: nothing(), models: None };
+        return EstimateCovariance { covariance: nothing(), plain: nothing(), models: None };
     };
     // how many samples the unknowns alone can meet: with no more of them nothing tells how large their errors are
     let met = jacobian.rows(0, data).row_iter().map(|row| (row * &plain).dot(&row)).sum::<f64>();
     if data as f64 - met < LEFT_OVER {
-        return Spread { covariance: nothing(), plain, models: None };
+        return EstimateCovariance { covariance: nothing(), plain, models: None };
     }
-    let colour = Colour::new(estimate);
+    let colour = ColouredNoise::new(estimate);
     let at = colour.found(small);
     let mut covariance = &plain * colour.scores(&at) * &plain;
     widen(&mut covariance, &between_recordings(estimate, &plain));
-    Spread { covariance, plain, models: Some(Models { colour, at, small }) }
+    EstimateCovariance { covariance, plain, models: Some(NoiseModels { colour, at, small }) }
 }
 
 /// Variances of the unknowns by how far recordings contradict each other, which no model of the errors within one says: the
 /// spread of their scores (Liang, Zeger, Biometrika 73, 1986). None where there is one recording.
-fn between_recordings(estimate: Linearised<'_>, plain: &DMatrix<f64>) -> DVector<f64> {
+fn between_recordings(estimate: LinearizedEstimate<'_>, plain: &DMatrix<f64>) -> DVector<f64> {
     let mut scores: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
     for s in estimate.series {
         let (rows, errors) = (&s.rows, estimate.residual.rows(s.rows.start, s.rows.len()));
@@ -137,9 +139,9 @@ fn widen(covariance: &mut DMatrix<f64>, variances: &DVector<f64>) {
 }
 
 /// The errors of all signals with the sensitivities beside them.
-struct Colour<'a> {
-    estimate: Linearised<'a>,
-    signals: Vec<Signal>,
+struct ColouredNoise<'a> {
+    estimate: LinearizedEstimate<'a>,
+    signals: Vec<LaggedProducts>,
     /// The rows that are known beforehand, squared: sensitivities and their residuals.
     known: DMatrix<f64>,
     /// The spread of scores that they bring.
@@ -148,7 +150,7 @@ struct Colour<'a> {
 
 /// The errors of one signal: products of their rows, shifted against each other, so that the likelihood costs the same
 /// however long the recordings are.
-struct Signal {
+struct LaggedProducts {
     ranges: Vec<Range<usize>>,
     order: usize,
     /// First guess: partial autocorrelations, then the logarithm of the deviation of what they do not tell.
@@ -161,19 +163,24 @@ struct Signal {
     longest: usize,
 }
 
-impl<'a> Colour<'a> {
-    fn new(estimate: Linearised<'a>) -> Colour<'a> {
+impl<'a> ColouredNoise<'a> {
+    fn new(estimate: LinearizedEstimate<'a>) -> ColouredNoise<'a> {
         let (data, rows) = (estimate.data(), estimate.jacobian.nrows());
         let with_errors = beside(estimate, data..rows);
         let own = estimate.jacobian.rows(data, rows - data);
         let of = |k: usize| estimate.series.iter().filter(move |s| s.signal == k && !s.rows.is_empty());
         let count = estimate.series.iter().map(|s| s.signal + 1).max().unwrap_or(0);
-        let signals = (0..count).filter_map(|k| Signal::new(of(k), estimate));
-        Colour { signals: signals.collect(), known: with_errors.tr_mul(&with_errors), sure: own.tr_mul(&own), estimate }
+        let signals = (0..count).filter_map(|k| LaggedProducts::new(of(k), estimate));
+        ColouredNoise {
+            signals: signals.collect(),
+            known: with_errors.tr_mul(&with_errors),
+            sure: own.tr_mul(&own),
+            estimate,
+        }
     }
 
     /// Each signal with its part of the models' parameters.
-    fn each<'p>(&self, at: &'p [f64]) -> impl Iterator<Item = (&Signal, &'p [f64])> {
+    fn each<'p>(&self, at: &'p [f64]) -> impl Iterator<Item = (&LaggedProducts, &'p [f64])> {
         let mut rest = at;
         self.signals.iter().map(move |s| {
             let (own, others) = rest.split_at(s.order + 1);
@@ -188,7 +195,7 @@ impl<'a> Colour<'a> {
         let mut squares = self.known.clone();
         let mut size = 0.0;
         for (signal, at) in self.each(at) {
-            let Some(filter) = Filter::new(at, signal.longest) else { return f64::INFINITY };
+            let Some(filter) = WhiteningFilter::new(at, signal.longest) else { return f64::INFINITY };
             size += signal.squares(&filter, &mut squares);
         }
         let mut information = squares.view((0, 0), (n, n)).into_owned();
@@ -210,7 +217,7 @@ impl<'a> Colour<'a> {
     fn scores(&self, at: &[f64]) -> DMatrix<f64> {
         let mut spread = self.sure.clone();
         for (signal, at) in self.each(at) {
-            let Some(filter) = Filter::new(at, signal.longest) else { continue };
+            let Some(filter) = WhiteningFilter::new(at, signal.longest) else { continue };
             for range in &signal.ranges {
                 let rows = filter.backwards(self.estimate.jacobian.rows(range.start, range.len()).into_owned());
                 spread += rows.tr_mul(&rows);
@@ -233,7 +240,7 @@ impl<'a> Colour<'a> {
 }
 
 /// Sensitivities and residual of some rows side by side.
-fn beside(estimate: Linearised<'_>, rows: Range<usize>) -> DMatrix<f64> {
+fn beside(estimate: LinearizedEstimate<'_>, rows: Range<usize>) -> DMatrix<f64> {
     let n = estimate.jacobian.ncols();
     DMatrix::from_fn(rows.len(), n + 1, |t, j| {
         let row = rows.start + t;
@@ -241,9 +248,12 @@ fn beside(estimate: Linearised<'_>, rows: Range<usize>) -> DMatrix<f64> {
     })
 }
 
-impl Signal {
+impl LaggedProducts {
     /// `None` where there is nothing to learn a model from.
-    fn new<'s>(series: impl Iterator<Item = &'s Series>, estimate: Linearised<'_>) -> Option<Signal> {
+    fn new<'s>(
+        series: impl Iterator<Item = &'s ResidualSeries>,
+        estimate: LinearizedEstimate<'_>,
+    ) -> Option<LaggedProducts> {
         let ranges: Vec<Range<usize>> = series.map(|s| s.rows.clone()).collect();
         let rows: usize = ranges.iter().map(ExactSizeIterator::len).sum();
         let shortest = ranges.iter().map(ExactSizeIterator::len).min()?;
@@ -266,11 +276,11 @@ impl Signal {
             heads.push(x.rows(0, order).into_owned());
         }
         let longest = ranges.iter().map(ExactSizeIterator::len).max()?;
-        Some(Signal { ranges, order, guess, heads, lagged, rows, longest })
+        Some(LaggedProducts { ranges, order, guess, heads, lagged, rows, longest })
     }
 
     /// Adds the squares of the whitened rows; returns the logarithm of the errors' volume.
-    fn squares(&self, filter: &Filter, squares: &mut DMatrix<f64>) -> f64 {
+    fn squares(&self, filter: &WhiteningFilter, squares: &mut DMatrix<f64>) -> f64 {
         let weight = |i: usize| if i == 0 { 1.0 } else { -filter.last()[i - 1] };
         let scale = filter.deviation.powi(-2);
         for (i, row) in self.lagged.iter().enumerate() {
@@ -313,7 +323,7 @@ fn chosen(errors: &[&[f64]], most: usize) -> Option<Vec<f64>> {
 }
 
 /// Makes errors of a model white.
-struct Filter {
+struct WhiteningFilter {
     /// Deviation of the white ones.
     deviation: f64,
     /// The prediction from 0, 1, 2.. rows before.
@@ -322,9 +332,9 @@ struct Filter {
     excess: Vec<f64>,
 }
 
-impl Filter {
+impl WhiteningFilter {
     /// From partial autocorrelations and deviation; `None` where errors resemble each other for longer than was looked.
-    fn new(at: &[f64], longest: usize) -> Option<Filter> {
+    fn new(at: &[f64], longest: usize) -> Option<WhiteningFilter> {
         let (deviation, angles) = at.split_last()?;
         let partial: Vec<f64> = angles.iter().map(|a| a.tanh()).collect();
         let limit = 1.0 - 1.0 / longest as f64;
@@ -336,7 +346,7 @@ impl Filter {
         excess.reverse();
         let mut coefficients = vec![Vec::new()];
         partial.iter().for_each(|p| coefficients.push(longer(&coefficients[coefficients.len() - 1], *p)));
-        Some(Filter { deviation: deviation.exp(), coefficients, excess })
+        Some(WhiteningFilter { deviation: deviation.exp(), coefficients, excess })
     }
 
     fn last(&self) -> &[f64] {
@@ -385,7 +395,7 @@ mod tests {
 
     #[test]
     fn backwards_undoes_the_transposed_forwards() {
-        let filter = Filter::new(&[0.9, -0.4, 0.3], 100).expect("a model");
+        let filter = WhiteningFilter::new(&[0.9, -0.4, 0.3], 100).expect("a model");
         let eye = DMatrix::<f64>::identity(9, 9);
         let white = filter.forwards(eye.clone());
         let undone = filter.backwards(eye);
@@ -396,7 +406,7 @@ mod tests {
     #[test]
     fn covariance_of_a_first_order_model() {
         let phi = 0.8f64;
-        let filter = Filter::new(&[phi.atanh(), 2f64.ln()], 100).expect("a model");
+        let filter = WhiteningFilter::new(&[phi.atanh(), 2f64.ln()], 100).expect("a model");
         let rows = filter.backwards(DMatrix::identity(5, 5));
         let covariance = rows.tr_mul(&rows);
         for i in 0..5usize {

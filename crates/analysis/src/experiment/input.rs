@@ -2,19 +2,19 @@
 
 /// How an input runs between the samples of its recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Hold {
+pub enum InputHold {
     /// Each sample holds until the next one; every change is an event.
     Held,
     /// Straight lines between samples.
     Linear,
 }
 
-impl Hold {
+impl InputHold {
     /// Reads `held` (or `hold`) and `linear`.
-    pub fn parse(text: &str) -> Option<Hold> {
+    pub fn parse(text: &str) -> Option<InputHold> {
         match text.trim() {
-            "held" | "hold" => Some(Hold::Held),
-            "linear" => Some(Hold::Linear),
+            "held" | "hold" => Some(InputHold::Held),
+            "linear" => Some(InputHold::Linear),
             _ => None,
         }
     }
@@ -30,7 +30,7 @@ pub struct InputMap {
     /// The unit of the column, where it is not the input's.
     pub unit: Option<String>,
     /// Between samples; `None` where the entry does not say.
-    pub hold: Option<Hold>,
+    pub hold: Option<InputHold>,
 }
 
 impl InputMap {
@@ -54,7 +54,7 @@ impl InputMap {
     /// A sentence saying what is expected.
     pub fn of(input: &str, source: &str) -> Result<InputMap, String> {
         let (source, hold) = match source.rsplit_once(':') {
-            Some((rest, word)) => match Hold::parse(word) {
+            Some((rest, word)) => match InputHold::parse(word) {
                 Some(hold) => (rest, Some(hold)),
                 None => return Err(format!("`{word}`: `held` or `linear` is expected after the colon")),
             },
@@ -68,7 +68,7 @@ impl InputMap {
             _ => (source, None),
         };
         if let Some(unit) = &unit {
-            bramah_expr::units::Unit::parse(unit).map_err(|e| e.to_string())?;
+            bramah_expr::units::MeasurementUnit::parse(unit).map_err(|e| e.to_string())?;
         }
         Ok(InputMap { input: input.trim().to_owned(), column: column.trim().to_owned(), unit, hold })
     }

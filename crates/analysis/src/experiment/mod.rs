@@ -18,15 +18,15 @@ mod input;
 mod sweep;
 mod table;
 
-pub use input::{Hold, InputMap};
-pub use sweep::{Sampling, Spread, Sweep};
+pub use input::{InputHold, InputMap};
+pub use sweep::{ParameterSweep, ParameterVariation, SamplingMethod};
 pub use table::parse;
 
 use bramah_results::CsvUnits;
 
 /// What is to be run; `None` and empty lists where nothing was said.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Experiment {
+pub struct ExperimentSpecification {
     /// A file, a folder that is a package, or the dotted name of a class that ships with bramah.
     pub file: Option<String>,
     /// The class to run.
@@ -58,7 +58,7 @@ pub struct Experiment {
     /// Which column drives which input, and how.
     pub map: Vec<InputMap>,
     /// How inputs run between samples where their own entry does not say.
-    pub interpolation: Option<Hold>,
+    pub interpolation: Option<InputHold>,
     /// Folders with further packages.
     pub library: Vec<String>,
     /// C sources and shared libraries that external functions may call.
@@ -68,13 +68,13 @@ pub struct Experiment {
     /// Warnings are errors.
     pub deny_warnings: Option<bool>,
     /// What `bramah sweep` varies.
-    pub sweep: Option<Sweep>,
+    pub sweep: Option<ParameterSweep>,
 }
 
-impl Experiment {
+impl ExperimentSpecification {
     /// What `self` says, and where it says nothing, what `other` says. Of a parameter set twice `self` wins.
     #[must_use]
-    pub fn over(mut self, other: Experiment) -> Experiment {
+    pub fn over(mut self, other: ExperimentSpecification) -> ExperimentSpecification {
         let own: Vec<String> = self.set.iter().map(|s| s.0.clone()).collect();
         let mut set: Vec<(String, String)> = other.set.into_iter().filter(|s| !own.contains(&s.0)).collect();
         set.append(&mut self.set);
@@ -82,7 +82,7 @@ impl Experiment {
             other.map.into_iter().filter(|m| !self.map.iter().any(|own| own.input == m.input)).collect();
         map.append(&mut self.map);
         let or = |own: Vec<String>, other: Vec<String>| if own.is_empty() { other } else { own };
-        Experiment {
+        ExperimentSpecification {
             file: self.file.or(other.file),
             model: self.model.or(other.model),
             set,
@@ -114,7 +114,7 @@ impl Experiment {
 /// A sentence saying what is expected.
 pub fn seconds(text: &str) -> Result<f64, String> {
     let (value, unit) = bramah_expr::units::quantity(text).map_err(|e| e.to_string())?;
-    let second = bramah_expr::units::Unit::parse("s").map_err(|e| e.to_string())?;
+    let second = bramah_expr::units::MeasurementUnit::parse("s").map_err(|e| e.to_string())?;
     let time = match unit {
         None => Some(value),
         Some(unit) => unit.convert(value, &second),
@@ -180,8 +180,14 @@ mod tests {
     #[test]
     fn the_command_line_goes_over_the_file() {
         let set = |v: &str| vec![("pump.D".to_owned(), v.to_owned())];
-        let file = Experiment { set: set("1"), stop_time: Some(1.0), model: Some("A".into()), ..Experiment::default() };
-        let line = Experiment { set: set("2"), stop_time: Some(2.0), ..Experiment::default() };
+        let file = ExperimentSpecification {
+            set: set("1"),
+            stop_time: Some(1.0),
+            model: Some("A".into()),
+            ..ExperimentSpecification::default()
+        };
+        let line =
+            ExperimentSpecification { set: set("2"), stop_time: Some(2.0), ..ExperimentSpecification::default() };
         let both = line.over(file);
         assert_eq!((both.set, both.stop_time, both.model.as_deref()), (set("2"), Some(2.0), Some("A")));
     }

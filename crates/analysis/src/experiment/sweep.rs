@@ -17,11 +17,11 @@
 
 use toml::de::DeValue;
 
-use super::table::{Reader, Value, scalar};
+use super::table::{ExperimentReader, ExperimentValue, scalar};
 
 /// How samples are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Sampling {
+pub enum SamplingMethod {
     /// All combinations of values.
     #[default]
     Grid,
@@ -35,17 +35,17 @@ pub enum Sampling {
     MonteCarlo,
 }
 
-const METHODS: &[(&str, Sampling)] = &[
-    ("grid", Sampling::Grid),
-    ("list", Sampling::List),
-    ("latin-hypercube", Sampling::LatinHypercube),
-    ("sobol", Sampling::Sobol),
-    ("monte-carlo", Sampling::MonteCarlo),
+const METHODS: &[(&str, SamplingMethod)] = &[
+    ("grid", SamplingMethod::Grid),
+    ("list", SamplingMethod::List),
+    ("latin-hypercube", SamplingMethod::LatinHypercube),
+    ("sobol", SamplingMethod::Sobol),
+    ("monte-carlo", SamplingMethod::MonteCarlo),
 ];
 
 /// How one parameter varies. Values are as written, in the parameter's unit or with one.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Spread {
+pub enum ParameterVariation {
     /// `1,2,5` or `FROM:TO:COUNT`, with a unit at the end for all.
     Values(String),
     /// Evenly between two values.
@@ -63,15 +63,15 @@ pub enum Spread {
 
 /// A sweep.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sweep {
+pub struct ParameterSweep {
     /// How samples are chosen.
-    pub method: Sampling,
+    pub method: SamplingMethod,
     /// How many, where values do not say.
     pub count: usize,
     /// Of the random numbers.
     pub seed: u64,
     /// Parameters and how they vary.
-    pub parameters: Vec<(String, Spread)>,
+    pub parameters: Vec<(String, ParameterVariation)>,
     /// Names of results and their expressions.
     pub results: Vec<(String, String)>,
 }
@@ -80,12 +80,12 @@ const KEYS: &[&str] = &["method", "count", "seed", "parameters", "results"];
 const SPREAD_KEYS: &[&str] = &["min", "max", "log", "sigma"];
 
 /// Reads the section.
-pub(super) fn sweep(reader: &mut Reader, value: &Value<'_>) -> Option<Sweep> {
+pub(super) fn sweep(reader: &mut ExperimentReader, value: &ExperimentValue<'_>) -> Option<ParameterSweep> {
     let DeValue::Table(table) = value.get_ref() else {
         reader.wrong_kind("sweep", value, "a table");
         return None;
     };
-    let mut sweep = Sweep { count: 100, seed: 1, ..Sweep::default() };
+    let mut sweep = ParameterSweep { count: 100, seed: 1, ..ParameterSweep::default() };
     for (key, value) in table {
         match key.get_ref().as_ref() {
             "method" => sweep.method = method(reader, value),
@@ -102,19 +102,19 @@ pub(super) fn sweep(reader: &mut Reader, value: &Value<'_>) -> Option<Sweep> {
     Some(sweep)
 }
 
-fn method(reader: &mut Reader, value: &Value<'_>) -> Sampling {
+fn method(reader: &mut ExperimentReader, value: &ExperimentValue<'_>) -> SamplingMethod {
     let text = value.get_ref().as_str().unwrap_or("");
     match METHODS.iter().find(|m| m.0 == text) {
         Some(m) => m.1,
         None => {
             let known: Vec<String> = METHODS.iter().map(|m| format!("`{}`", m.0)).collect();
             reader.report(&value.span(), format!("`method` is one of {}", known.join(", ")), "this is none of them");
-            Sampling::Grid
+            SamplingMethod::Grid
         }
     }
 }
 
-fn whole(reader: &mut Reader, key: &str, value: &Value<'_>) -> u64 {
+fn whole(reader: &mut ExperimentReader, key: &str, value: &ExperimentValue<'_>) -> u64 {
     let number = scalar(value.get_ref()).and_then(|t| t.parse::<u64>().ok()).filter(|n| *n <= 100_000_000);
     if number.is_none() {
         reader.wrong_kind(key, value, "a whole number that is not negative");
@@ -123,7 +123,12 @@ fn whole(reader: &mut Reader, key: &str, value: &Value<'_>) -> u64 {
 }
 
 /// Dotted keys arrive as tables inside tables.
-fn parameters(reader: &mut Reader, prefix: &str, value: &Value<'_>, out: &mut Vec<(String, Spread)>) {
+fn parameters(
+    reader: &mut ExperimentReader,
+    prefix: &str,
+    value: &ExperimentValue<'_>,
+    out: &mut Vec<(String, ParameterVariation)>,
+) {
     let DeValue::Table(table) = value.get_ref() else {
         reader.wrong_kind("parameters", value, "a table of parameters");
         return;
@@ -138,19 +143,19 @@ fn parameters(reader: &mut Reader, prefix: &str, value: &Value<'_>, out: &mut Ve
             DeValue::Array(items) => {
                 let all: Option<Vec<String>> = items.iter().map(|v| scalar(v.get_ref())).collect();
                 match all {
-                    Some(all) => out.push((name, Spread::Values(all.join(",")))),
+                    Some(all) => out.push((name, ParameterVariation::Values(all.join(",")))),
                     None => reader.wrong_kind(&name, value, "a list of numbers"),
                 }
             }
             other => match scalar(other) {
-                Some(text) => out.push((name, Spread::Values(text))),
+                Some(text) => out.push((name, ParameterVariation::Values(text))),
                 None => reader.wrong_kind(&name, value, "values, or a table with `min` and `max`, or `sigma`"),
             },
         }
     }
 }
 
-fn spread(reader: &mut Reader, value: &Value<'_>) -> Option<Spread> {
+fn spread(reader: &mut ExperimentReader, value: &ExperimentValue<'_>) -> Option<ParameterVariation> {
     let table = value.get_ref().as_table()?;
     let (mut min, mut max, mut sigma, mut logarithmic) = (None, None, None, false);
     for (key, value) in table {
@@ -163,8 +168,8 @@ fn spread(reader: &mut Reader, value: &Value<'_>) -> Option<Spread> {
         }
     }
     match (min, max, sigma) {
-        (Some(min), Some(max), None) => Some(Spread::Range { min, max, logarithmic }),
-        (None, None, Some(sigma)) => Some(Spread::Sigma(sigma)),
+        (Some(min), Some(max), None) => Some(ParameterVariation::Range { min, max, logarithmic }),
+        (None, None, Some(sigma)) => Some(ParameterVariation::Sigma(sigma)),
         _ => {
             reader.report(&value.span(), "a parameter varies by `min` and `max`, or by `sigma`", "this one");
             None
@@ -172,7 +177,7 @@ fn spread(reader: &mut Reader, value: &Value<'_>) -> Option<Spread> {
     }
 }
 
-fn results(reader: &mut Reader, value: &Value<'_>, out: &mut Vec<(String, String)>) {
+fn results(reader: &mut ExperimentReader, value: &ExperimentValue<'_>, out: &mut Vec<(String, String)>) {
     let DeValue::Table(table) = value.get_ref() else {
         reader.wrong_kind("results", value, "a table of names and expressions");
         return;

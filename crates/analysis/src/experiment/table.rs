@@ -5,9 +5,9 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{Experiment, Hold, InputMap, duration, event_rows, seconds, tolerance};
+use super::{ExperimentSpecification, InputHold, InputMap, duration, event_rows, seconds, tolerance};
 use bramah_results::glob;
-use bramah_syntax::diag::{Checked, Code, Diagnostic, FileId, Sources, Span, nearest};
+use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources, Span, StageResult, nearest};
 
 /// The keys at the top, in the order in which `bramah new` writes them.
 const KEYS: &[&str] = &[
@@ -34,16 +34,16 @@ const KEYS: &[&str] = &[
     "sweep",
 ];
 
-pub(super) type Value<'a> = Spanned<DeValue<'a>>;
+pub(super) type ExperimentValue<'a> = Spanned<DeValue<'a>>;
 
 /// Reads an experiment file that was added to `sources`. Paths in it are as written.
 ///
 /// # Errors
 /// [`Code::BadExperiment`]: text that is not TOML, unknown keys, values of the wrong kind.
-pub fn parse(sources: &Sources, file: FileId) -> Checked<Experiment> {
+pub fn parse(sources: &Sources, file: FileId) -> StageResult<ExperimentSpecification> {
     let text = &sources.get(file).text;
     let (document, errors) = DeTable::parse_recoverable(text);
-    let mut reader = Reader { file, experiment: Experiment::default(), diagnostics: Vec::new() };
+    let mut reader = ExperimentReader { file, experiment: ExperimentSpecification::default(), diagnostics: Vec::new() };
     for error in errors {
         let place = error.span().unwrap_or(0..0);
         let message = format!("the text is not TOML: {}", error.message().lines().next().unwrap_or("unreadable"));
@@ -55,20 +55,20 @@ pub fn parse(sources: &Sources, file: FileId) -> Checked<Experiment> {
         }
     }
     if reader.diagnostics.is_empty() {
-        Checked::new(reader.experiment, Vec::new())
+        StageResult::new(reader.experiment, Vec::new())
     } else {
-        Checked::failed(reader.diagnostics)
+        StageResult::failed(reader.diagnostics)
     }
 }
 
 /// Reads values and collects what is wrong with them.
-pub(super) struct Reader {
+pub(super) struct ExperimentReader {
     file: FileId,
-    experiment: Experiment,
+    experiment: ExperimentSpecification,
     diagnostics: Vec<Diagnostic>,
 }
 
-impl Reader {
+impl ExperimentReader {
     fn diagnostic(&self, place: &Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Diagnostic {
         let byte = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
         let span = Span { file: self.file, start: byte(place.start), end: byte(place.end) };
@@ -80,12 +80,12 @@ impl Reader {
         self.diagnostics.push(diagnostic);
     }
 
-    pub(super) fn wrong_kind(&mut self, key: &str, value: &Value<'_>, expected: &str) {
+    pub(super) fn wrong_kind(&mut self, key: &str, value: &ExperimentValue<'_>, expected: &str) {
         let found = value.get_ref().type_str();
         self.report(&value.span(), format!("`{key}` is {expected}"), format!("this is a value of type {found}"));
     }
 
-    fn entry(&mut self, key: &str, place: &Range<usize>, value: &Value<'_>) {
+    fn entry(&mut self, key: &str, place: &Range<usize>, value: &ExperimentValue<'_>) {
         match key {
             "file" => self.experiment.file = self.text(key, value),
             "model" => self.experiment.model = self.text(key, value),
@@ -129,7 +129,7 @@ impl Reader {
         self.diagnostics.push(diagnostic);
     }
 
-    pub(super) fn text(&mut self, key: &str, value: &Value<'_>) -> Option<String> {
+    pub(super) fn text(&mut self, key: &str, value: &ExperimentValue<'_>) -> Option<String> {
         let text = value.get_ref().as_str().map(str::to_owned);
         if text.is_none() {
             self.wrong_kind(key, value, "a text in quotes");
@@ -138,7 +138,7 @@ impl Reader {
     }
 
     /// A number, or a text that `read` understands.
-    fn number<T>(&mut self, key: &str, value: &Value<'_>, read: fn(&str) -> Result<T, String>) -> Option<T> {
+    fn number<T>(&mut self, key: &str, value: &ExperimentValue<'_>, read: fn(&str) -> Result<T, String>) -> Option<T> {
         let text = match value.get_ref() {
             DeValue::Integer(_) | DeValue::Float(_) | DeValue::String(_) => scalar(value.get_ref())?,
             _ => {
@@ -150,7 +150,7 @@ impl Reader {
     }
 
     /// A list of texts, or one text with commas.
-    fn list(&mut self, key: &str, value: &Value<'_>) -> Vec<String> {
+    fn list(&mut self, key: &str, value: &ExperimentValue<'_>) -> Vec<String> {
         match value.get_ref() {
             DeValue::String(text) => glob::split_list(text),
             DeValue::Array(items) => items.iter().filter_map(|item| self.text(key, item)).collect(),
@@ -162,7 +162,7 @@ impl Reader {
     }
 
     /// Values of parameters; dotted keys arrive as tables inside tables.
-    fn set(&mut self, prefix: &str, value: &Value<'_>) {
+    fn set(&mut self, prefix: &str, value: &ExperimentValue<'_>) {
         let DeValue::Table(table) = value.get_ref() else {
             self.wrong_kind("set", value, "a table of parameters and values");
             return;
@@ -180,7 +180,7 @@ impl Reader {
         }
     }
 
-    fn map(&mut self, value: &Value<'_>) {
+    fn map(&mut self, value: &ExperimentValue<'_>) {
         match value.get_ref() {
             DeValue::String(text) => {
                 for entry in glob::split_list(text) {
@@ -196,7 +196,7 @@ impl Reader {
         }
     }
 
-    fn mapped(&mut self, entry: Result<InputMap, String>, value: &Value<'_>) {
+    fn mapped(&mut self, entry: Result<InputMap, String>, value: &ExperimentValue<'_>) {
         match entry {
             Ok(entry) => self.experiment.map.push(entry),
             Err(why) => self.report(&value.span(), why, "this entry"),
@@ -204,7 +204,7 @@ impl Reader {
     }
 
     /// `F = "tau_N[N]"`, or `F = { column = "tau_N", unit = "N", interpolation = "linear" }`.
-    fn map_entry(&mut self, input: &str, value: &Value<'_>) {
+    fn map_entry(&mut self, input: &str, value: &ExperimentValue<'_>) {
         match value.get_ref() {
             DeValue::String(text) => self.mapped(InputMap::of(input, text), value),
             DeValue::Table(table) if table.iter().any(|(k, _)| is_map_key(k.get_ref())) => {
@@ -229,8 +229,8 @@ impl Reader {
         }
     }
 
-    fn hold(&mut self, key: &str, value: &Value<'_>) -> Option<Hold> {
-        let hold = value.get_ref().as_str().and_then(Hold::parse);
+    fn hold(&mut self, key: &str, value: &ExperimentValue<'_>) -> Option<InputHold> {
+        let hold = value.get_ref().as_str().and_then(InputHold::parse);
         if hold.is_none() {
             self.wrong_kind(key, value, "`held` or `linear`");
         }
@@ -262,9 +262,9 @@ pub(super) fn scalar(value: &DeValue<'_>) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bramah_syntax::diag::render::{Format, render, short_list};
+    use bramah_syntax::diag::render::{DiagnosticFormat, render, short_list};
 
-    fn read(text: &str) -> (Option<Experiment>, String) {
+    fn read(text: &str) -> (Option<ExperimentSpecification>, String) {
         let mut sources = Sources::default();
         let file = sources.add("press.toml", text);
         let checked = parse(&sources, file);
@@ -333,7 +333,7 @@ pulse = { column = "pulse_V", unit = "V", interpolation = "held" }
     fn a_message_for_people() {
         let mut sources = Sources::default();
         let file = sources.add("press.toml", "model = \"Press\"\nstop-tiem = 2\n");
-        let text = render(&sources, &parse(&sources, file).diagnostics, Format::Human, 100, false);
+        let text = render(&sources, &parse(&sources, file).diagnostics, DiagnosticFormat::Human, 100, false);
         insta::assert_snapshot!(text, @r"
         error[E602]: there is no key `stop-tiem`
          --> press.toml:2:1

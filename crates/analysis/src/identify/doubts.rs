@@ -1,6 +1,6 @@
 //! Doubts that a user should hear first: columns of another sign or unit, signals met worse than by a constant.
 
-use super::{Fit, Method, Problem, SignalFit, Trajectory};
+use super::{IdentificationProblem, IdentifyMethod, ParameterFit, SignalFit, SignalTrajectory};
 use bramah_results::number::rounded;
 use bramah_syntax::diag::{Code, Diagnostic};
 
@@ -15,13 +15,13 @@ const FAR: f64 = 300.0;
 
 /// Warnings ([`Code::ForeignColumn`]) about signals that follow the run with the model's own values, but with another
 /// sign or size.
-pub(super) fn foreign(problem: &Problem<'_>, trajectories: &[Trajectory]) -> Vec<Diagnostic> {
+pub(super) fn foreign(problem: &IdentificationProblem<'_>, trajectories: &[SignalTrajectory]) -> Vec<Diagnostic> {
     let strange = |f: &f64| *f < 0.0 || !(1.0 / FAR..FAR).contains(f);
     let found = trajectories.iter().filter_map(|c| Some((c, multiple(c).filter(strange)?)));
     found.map(|(trajectory, factor)| suspicion(problem, trajectory, factor)).collect()
 }
 
-fn suspicion(problem: &Problem<'_>, trajectory: &Trajectory, factor: f64) -> Diagnostic {
+fn suspicion(problem: &IdentificationProblem<'_>, trajectory: &SignalTrajectory, factor: f64) -> Diagnostic {
     let times = rounded(factor, 3);
     let text = format!("`{}` goes {times} times as in a run with the values of the model", trajectory.name);
     let d = Diagnostic::new(Code::ForeignColumn, text);
@@ -39,14 +39,14 @@ fn suspicion(problem: &Problem<'_>, trajectory: &Trajectory, factor: f64) -> Dia
 
 /// Warnings ([`Code::WorseThanConstant`]) about signals whose errors are larger than their own deviation, on the train
 /// recordings or on held ones.
-pub fn doubts(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> Vec<Diagnostic> {
+pub fn doubts(problem: &IdentificationProblem<'_>, fit: &ParameterFit, held: &[SignalFit]) -> Vec<Diagnostic> {
     let roles = [("train", fit.train.as_slice()), ("held", held)];
     let found = roles.into_iter().flat_map(|(role, fits)| fits.iter().map(move |f| (role, f)));
     let doubtful = found.filter(|(_, f)| f.relative > CONSTANT);
     doubtful.map(|(role, signal)| doubt(problem, fit, role, signal)).collect()
 }
 
-fn doubt(problem: &Problem<'_>, fit: &Fit, role: &str, signal: &SignalFit) -> Diagnostic {
+fn doubt(problem: &IdentificationProblem<'_>, fit: &ParameterFit, role: &str, signal: &SignalFit) -> Diagnostic {
     let (name, share) = (&signal.name, rounded(100.0 * signal.relative, 3));
     let text = format!("`{name}` is met worse than by a constant: on {role} recordings the error is {share} %");
     let mut d = Diagnostic::new(Code::WorseThanConstant, text).note("in parts of the signal's own deviation");
@@ -54,7 +54,7 @@ fn doubt(problem: &Problem<'_>, fit: &Fit, role: &str, signal: &SignalFit) -> Di
     if let Some(span) = span {
         d = d.at(span, "compared here");
     }
-    let trajectory = fit.trajectories.iter().find(|c| c.name == *name && fit.method == Method::Output);
+    let trajectory = fit.trajectories.iter().find(|c| c.name == *name && fit.method == IdentifyMethod::Output);
     if let Some(factor) = trajectory.and_then(multiple) {
         d = d.help(advice(factor));
     }
@@ -68,7 +68,7 @@ fn doubt(problem: &Problem<'_>, fit: &Fit, role: &str, signal: &SignalFit) -> Di
 }
 
 /// By which number the model has to be multiplied to give what was measured, means apart, where that explains it.
-fn multiple(trajectory: &Trajectory) -> Option<f64> {
+fn multiple(trajectory: &SignalTrajectory) -> Option<f64> {
     let n = trajectory.measured.len() as f64;
     let modelled: Vec<f64> = trajectory.measured.iter().zip(&trajectory.errors).map(|(m, e)| m + e).collect();
     let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
@@ -95,11 +95,11 @@ fn advice(factor: f64) -> String {
 mod tests {
     use super::*;
 
-    fn trajectory(factor: f64) -> Trajectory {
+    fn trajectory(factor: f64) -> SignalTrajectory {
         let modelled: Vec<f64> = (0..50).map(|k| (0.3 * f64::from(k)).sin()).collect();
         let measured: Vec<f64> = modelled.iter().map(|m| 5.0 + factor * m).collect();
         let errors = modelled.iter().zip(&measured).map(|(s, m)| s - m).collect();
-        Trajectory { name: "y".into(), unit: "1".into(), times: vec![0.0; 50], measured, errors }
+        SignalTrajectory { name: "y".into(), unit: "1".into(), times: vec![0.0; 50], measured, errors }
     }
 
     #[test]

@@ -1,30 +1,30 @@
 //! Derivatives of runs along recordings, carried along by one run instead of two for each unknown.
 
 use super::pieces::FreeState;
-use super::runs::{Samples, Track};
-use super::{Free, Problem};
-use crate::Tangent;
+use super::runs::{RunInputs, SampleCollector};
+use super::{EstimatedParameter, IdentificationProblem};
+use crate::TangentModel;
 use bramah_expr::VarId;
 use bramah_solve::{Control, End, Settings, State, simulate};
 
 /// A model that carries its derivatives by the parameters along.
 #[derive(Clone, Debug)]
-pub struct Exact {
-    tangent: Tangent,
+pub struct ForwardSensitivityModel {
+    tangent: TangentModel,
     /// What one unit of each parameter's direction means, in its unit.
     sizes: Vec<f64>,
 }
 
-impl Exact {
+impl ForwardSensitivityModel {
     /// For the parameters of a problem.
     ///
     /// # Errors
     /// In words, why differences have to do.
-    pub fn new(problem: &Problem<'_>) -> Result<Exact, String> {
+    pub fn new(problem: &IdentificationProblem<'_>) -> Result<ForwardSensitivityModel, String> {
         let sizes: Vec<f64> = problem.free.iter().map(|f| f.slope(0.0).abs()).collect();
         let moved: Vec<(VarId, f64)> = problem.free.iter().map(|f| f.variable).zip(sizes.iter().copied()).collect();
-        let tangent = Tangent::new(&problem.model.flat, &moved)?;
-        Ok(Exact { tangent, sizes })
+        let tangent = TangentModel::new(&problem.model.flat, &moved)?;
+        Ok(ForwardSensitivityModel { tangent, sizes })
     }
 
     /// Derivatives of `wanted` at the samples by z: one entry an unknown (parameters, then these states), in it one column
@@ -34,8 +34,8 @@ impl Exact {
     /// In words, why differences have to do.
     pub fn columns(
         &self,
-        (track, states, before): (&Track, &[FreeState], Option<&State>),
-        free: &[Free],
+        (track, states, before): (&RunInputs, &[FreeState], Option<&State>),
+        free: &[EstimatedParameter],
         z: (&[f64], &[f64]),
         wanted: &[VarId],
         tolerance: f64,
@@ -66,7 +66,7 @@ impl Exact {
         }
         let unknowns = free.len() + states.len();
         let cells: Vec<VarId> = (0..=unknowns).flat_map(|_| wanted.iter().copied()).collect();
-        let mut rows = Samples::new(&track.times, &cells);
+        let mut rows = SampleCollector::new(&track.times, &cells);
         let system = &self.tangent.system;
         let run = simulate(system, &settings, &track.inputs, from.as_ref(), &mut rows, &mut Control::default());
         if run.end != End::Reached {
@@ -82,7 +82,7 @@ impl Exact {
     }
 
     /// The start of the run as the model has it.
-    fn start(&self, track: &Track, settings: &Settings) -> Result<State, String> {
+    fn start(&self, track: &RunInputs, settings: &Settings) -> Result<State, String> {
         let at_once = Settings { stop_time: settings.start_time, interval: 0.0, ..settings.clone() };
         self.tangent.start(&at_once, &track.inputs, None)
     }

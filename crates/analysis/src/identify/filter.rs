@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 /// One second-order section in the transposed direct form.
 #[derive(Clone, Copy, Debug)]
-struct Section {
+struct SecondOrderSection {
     b: [f64; 3],
     a: [f64; 2],
 }
@@ -12,7 +12,7 @@ struct Section {
 /// A Butterworth low-pass of fourth order, run forwards and backwards: no phase shift, half the amplitude at the corner.
 #[derive(Clone, Copy, Debug)]
 pub struct LowPass {
-    sections: [Section; 2],
+    sections: [SecondOrderSection; 2],
     /// Samples after which a transient is gone.
     settle: usize,
 }
@@ -28,7 +28,7 @@ impl LowPass {
             let scale = 1.0 + 2.0 * zeta * w + w * w;
             let gain = w * w / scale;
             let a = [2.0 * (w * w - 1.0) / scale, (1.0 - 2.0 * zeta * w + w * w) / scale];
-            Section { b: [gain, 2.0 * gain, gain], a }
+            SecondOrderSection { b: [gain, 2.0 * gain, gain], a }
         };
         LowPass { sections: [section(1.0), section(3.0)], settle: (1.5 / corner).ceil() as usize }
     }
@@ -54,7 +54,7 @@ impl LowPass {
     }
 }
 
-impl Section {
+impl SecondOrderSection {
     /// Filters in place, from the steady state of the first value on.
     fn run(&self, values: &mut [f64]) {
         let x0 = values[0];

@@ -2,20 +2,23 @@
 
 use super::chance::student;
 use super::inverse::InverseModel;
-use super::least_squares::Minimum;
+use super::least_squares::LeastSquaresSolution;
 use super::residuals::inputs_beside;
 use super::separate::{separate, without_rest};
-use super::weights::Weights;
-use super::{Identification, Joints, Method, Problem, ResidualTest, Residuals, Starts};
-use crate::estimate::{Linearised, spread};
+use super::weights::ResidualWeights;
+use super::{
+    ContinuityDefects, Identification, IdentificationProblem, IdentifyMethod, MultistartSummary, ResidualTest,
+    WeightedResiduals,
+};
+use crate::estimate::{LinearizedEstimate, spread};
 use crate::study::Recording;
 use nalgebra::DMatrix;
 
-/// What the fit found. Vectors are in the order of [`Problem::free`].
+/// What the fit found. Vectors are in the order of [`IdentificationProblem::free`].
 #[derive(Clone, Debug)]
-pub struct Fit {
-    /// [`Method::Output`] or [`Method::Inverse`].
-    pub method: Method,
+pub struct ParameterFit {
+    /// [`IdentifyMethod::Output`] or [`IdentifyMethod::Inverse`].
+    pub method: IdentifyMethod,
     /// Values in the parameters' units.
     pub values: Vec<f64>,
     /// One standard deviation of each.
@@ -35,13 +38,13 @@ pub struct Fit {
     /// What the errors on the train recordings look like, one a signal (or input, for the inverse model).
     pub residuals: Vec<ResidualTest>,
     /// Measured and modelled trajectory of each signal along the first train recording.
-    pub trajectories: Vec<Trajectory>,
+    pub trajectories: Vec<SignalTrajectory>,
     /// Why derivatives were differences along some recording; `None` where runs carried them all along.
     pub differences: Option<String>,
     /// Where searches from several places ended.
-    pub starts: Starts,
+    pub starts: MultistartSummary,
     /// How pieces of recordings join; `None` where none is cut.
-    pub joints: Option<Joints>,
+    pub joints: Option<ContinuityDefects>,
     /// All unknowns: the parameters on the scale of the search, then initial states.
     pub(super) z: Vec<f64>,
     /// Variances of the parameters on that scale.
@@ -51,12 +54,12 @@ pub struct Fit {
     /// The sum of squares.
     pub(super) cost: f64,
     /// How errors were weighed.
-    pub(super) weights: Weights,
+    pub(super) weights: ResidualWeights,
 }
 
 /// A signal along a recording.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trajectory {
+pub struct SignalTrajectory {
     /// The signal's name; for the inverse model the input's.
     pub name: String,
     /// Its unit.
@@ -69,10 +72,10 @@ pub struct Trajectory {
     pub errors: Vec<f64>,
 }
 
-impl Fit {
+impl ParameterFit {
     /// The 95 % interval of a parameter, in its unit, from its deviation on the scale of the search and Student's
     /// distribution: on a logarithmic scale it lies about the value by a factor. Infinite where the data say nothing.
-    pub fn interval(&self, problem: &Problem<'_>, parameter: usize) -> (f64, f64) {
+    pub fn interval(&self, problem: &IdentificationProblem<'_>, parameter: usize) -> (f64, f64) {
         let (free, z) = (&problem.free[parameter], self.z[parameter]);
         let half = student(self.degrees[parameter]) * self.spread[parameter].sqrt();
         (free.value(z - half), free.value(z + half))
@@ -95,7 +98,7 @@ pub struct SignalFit {
 }
 
 impl Identification<'_> {
-    pub(super) fn force_fits(&self, model: &mut InverseModel<'_>, minimum: &Minimum) -> Vec<SignalFit> {
+    pub(super) fn force_fits(&self, model: &mut InverseModel<'_>, minimum: &LeastSquaresSolution) -> Vec<SignalFit> {
         let weights = model.weights().clone();
         let one = |(k, input): (usize, &crate::study::BoundInput)| {
             let rmse = weights.rms(k, minimum.residual.as_slice())?;
@@ -109,14 +112,14 @@ impl Identification<'_> {
 
     pub(super) fn estimate(
         &self,
-        model: &mut dyn Residuals,
-        minimum: &Minimum,
+        model: &mut dyn WeightedResiduals,
+        minimum: &LeastSquaresSolution,
         train: Vec<SignalFit>,
-        trajectories: Vec<Trajectory>,
-    ) -> Fit {
+        trajectories: Vec<SignalTrajectory>,
+    ) -> ParameterFit {
         let p = self.problem.free.len();
         let series = &model.weights().series.clone();
-        let spread = spread(Linearised { jacobian: &minimum.jacobian, residual: &minimum.residual, series });
+        let spread = spread(LinearizedEstimate { jacobian: &minimum.jacobian, residual: &minimum.residual, series });
         let (mut covariance, plain, degrees) = (spread.covariance.clone(), &spread.plain, spread.degrees());
         // what nothing is known about has no finite deviation
         let distinct = separate(&without_rest(&minimum.jacobian.tr_mul(&minimum.jacobian), p));
@@ -132,7 +135,7 @@ impl Identification<'_> {
             let scale = deviation(i) * deviation(j);
             if scale > 0.0 && scale.is_finite() { covariance[(i, j)] / scale } else { f64::from(u8::from(i == j)) }
         });
-        Fit {
+        ParameterFit {
             method: self.method(),
             values: free.map(|(f, &z)| f.value(z)).collect(),
             deviations: (0..p).map(|j| slope[j] * deviation(j)).collect(),
@@ -144,7 +147,7 @@ impl Identification<'_> {
             residuals: Vec::new(),
             trajectories,
             differences: None,
-            starts: Starts::default(),
+            starts: MultistartSummary::default(),
             joints: None,
             z: minimum.z.clone(),
             spread: (0..p).map(|j| covariance[(j, j)].max(0.0)).collect(),
@@ -156,9 +159,9 @@ impl Identification<'_> {
     }
 
     /// Tests what is left over.
-    pub(super) fn judge_residuals(&self, fit: &Fit, residual: &[f64]) -> Vec<ResidualTest> {
+    pub(super) fn judge_residuals(&self, fit: &ParameterFit, residual: &[f64]) -> Vec<ResidualTest> {
         let bound = self.problem.bound;
-        if self.method() == Method::Inverse {
+        if self.method() == IdentifyMethod::Inverse {
             let all = bound.inputs.iter().enumerate();
             return all
                 .filter_map(|(k, input)| ResidualTest::new(&input.name, k, &fit.weights, residual, &[]))
@@ -174,8 +177,8 @@ impl Identification<'_> {
 
 /// How well each signal is met.
 pub(super) fn signal_fits(
-    problem: &Problem<'_>,
-    weights: &Weights,
+    problem: &IdentificationProblem<'_>,
+    weights: &ResidualWeights,
     residual: &[f64],
     recordings: &[Recording],
 ) -> Vec<SignalFit> {

@@ -7,21 +7,21 @@
 
 use super::filter::{LowPass, derivative, filled};
 use super::least_squares::LeastSquares;
-use super::weights::Weights;
-use super::{Problem, Residuals, Trajectory};
-use crate::estimate::Series;
-use crate::local::Plan;
+use super::weights::ResidualWeights;
+use super::{IdentificationProblem, SignalTrajectory, WeightedResiduals};
+use crate::estimate::ResidualSeries;
+use crate::local::EvaluationPlan;
 use crate::study::Recording;
-use crate::{Local, lift};
+use crate::{LocalEvaluator, lift};
 use bramah_expr::VarId;
-use bramah_expr::units::{Dimension, Unit};
+use bramah_expr::units::{Dimension, MeasurementUnit};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Where a state comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Origin {
+enum StateSource {
     /// A signal over a factor.
     Signal(usize, f64),
     /// The derivative of another state.
@@ -30,10 +30,10 @@ enum Origin {
 
 /// How a model is inverted.
 #[derive(Clone, Debug)]
-pub struct Inverse {
-    plan: Arc<Plan>,
+pub struct ModelInversion {
+    plan: Arc<EvaluationPlan>,
     /// Per state, in the order of `order`.
-    origins: Vec<Origin>,
+    origins: Vec<StateSource>,
     /// States in an order in which each comes after the one it is derived from.
     order: Vec<usize>,
     /// States whose rate the force decides, as many as inputs.
@@ -42,22 +42,23 @@ pub struct Inverse {
     inputs: Vec<usize>,
 }
 
-impl Inverse {
+impl ModelInversion {
     /// `None` where the inputs are not measured forces or torques, or the motion does not follow from the signals.
-    pub fn new(problem: &Problem<'_>) -> Option<Inverse> {
+    pub fn new(problem: &IdentificationProblem<'_>) -> Option<ModelInversion> {
         let bound = problem.bound;
-        let force = |unit: &str| Unit::parse(unit).is_ok_and(|u| u.dimension == FORCE || u.dimension == TORQUE);
+        let force =
+            |unit: &str| MeasurementUnit::parse(unit).is_ok_and(|u| u.dimension == FORCE || u.dimension == TORQUE);
         if bound.inputs.is_empty() || !bound.inputs.iter().all(|i| force(&i.unit)) {
             return None;
         }
         let parameters: Vec<VarId> = problem.free.iter().map(|f| f.variable).collect();
         let outputs: Vec<VarId> = bound.signals.iter().map(|s| s.variable).collect();
-        let plan = Arc::new(Plan::new(&lift(&problem.model.flat, &parameters, &outputs)).ok()?);
-        let mut inverse = Inverse {
+        let plan = Arc::new(EvaluationPlan::new(&lift(&problem.model.flat, &parameters, &outputs)).ok()?);
+        let mut inverse = ModelInversion {
             order: Vec::new(),
             driven: Vec::new(),
             inputs: plan_inputs(problem)?,
-            origins: vec![Origin::Rate(usize::MAX); plan.states()],
+            origins: vec![StateSource::Rate(usize::MAX); plan.states()],
             plan,
         };
         inverse.find_origins(problem)?;
@@ -65,11 +66,11 @@ impl Inverse {
     }
 
     /// Reads from the derivatives at two points which state is a signal, and which the derivative of another.
-    fn find_origins(&mut self, problem: &Problem<'_>) -> Option<()> {
+    fn find_origins(&mut self, problem: &IdentificationProblem<'_>) -> Option<()> {
         let n = self.plan.states();
         let theta: Vec<f64> = problem.free.iter().map(|f| f.start).collect();
         let u = vec![0.0; self.inputs.len()];
-        let mut local = Local::start(self.plan.clone(), 0.0, &theta, &u).ok()?;
+        let mut local = LocalEvaluator::start(self.plan.clone(), 0.0, &theta, &u).ok()?;
         let (x0, nominals) = (local.state(), local.nominals());
         let mut points = Vec::new();
         for shift in [0.01, 0.037] {
@@ -86,7 +87,7 @@ impl Inverse {
                 && !known[*i]
             {
                 known[*i] = true;
-                self.origins[*i] = Origin::Signal(s, *a);
+                self.origins[*i] = StateSource::Signal(s, *a);
                 self.order.push(*i);
             }
         }
@@ -104,7 +105,7 @@ impl Inverse {
                 defines[row] = true;
                 if !known[*i] {
                     known[*i] = true;
-                    self.origins[*i] = Origin::Rate(row);
+                    self.origins[*i] = StateSource::Rate(row);
                     self.order.push(*i);
                 }
             }
@@ -124,7 +125,7 @@ const FORCE: Dimension = Dimension::new([1, 1, -2, 0, 0, 0, 0]);
 const TORQUE: Dimension = Dimension::new([1, 2, -2, 0, 0, 0, 0]);
 
 /// Per input of the model, in declaration order, its entry in the study; `None` where one is not driven.
-fn plan_inputs(problem: &Problem<'_>) -> Option<Vec<usize>> {
+fn plan_inputs(problem: &IdentificationProblem<'_>) -> Option<Vec<usize>> {
     let all = (0..).map(VarId).zip(&problem.model.flat.variables).filter(|(_, v)| v.input);
     all.map(|(v, _)| problem.bound.inputs.iter().position(|i| i.variable == v)).collect()
 }
@@ -137,7 +138,7 @@ fn lone<'v>(row: impl Iterator<Item = &'v f64>, mut others: impl Iterator<Item =
 }
 
 /// A recording's motion, as the equations want it.
-struct Motion {
+struct RecordedMotion {
     times: Vec<f64>,
     /// One column a state.
     states: Vec<Vec<f64>>,
@@ -159,28 +160,32 @@ const POWER: f64 = 0.99;
 
 /// Residual and derivatives of the inverse model along recordings.
 pub struct InverseModel<'a> {
-    problem: &'a Problem<'a>,
-    inverse: &'a Inverse,
-    motions: Vec<Motion>,
-    weights: Weights,
+    problem: &'a IdentificationProblem<'a>,
+    inverse: &'a ModelInversion,
+    motions: Vec<RecordedMotion>,
+    weights: ResidualWeights,
     /// Thinned measured forces, in the order of the residual.
     measured: Vec<f64>,
 }
 
 impl<'a> InverseModel<'a> {
     /// Filters the recordings. `None` where one is too short.
-    pub fn new(problem: &'a Problem<'a>, inverse: &'a Inverse, recordings: &[Recording]) -> Option<Self> {
-        let motions: Vec<Motion> = recordings.iter().map(|r| motion(inverse, r)).collect::<Option<_>>()?;
+    pub fn new(
+        problem: &'a IdentificationProblem<'a>,
+        inverse: &'a ModelInversion,
+        recordings: &[Recording],
+    ) -> Option<Self> {
+        let motions: Vec<RecordedMotion> = recordings.iter().map(|r| motion(inverse, r)).collect::<Option<_>>()?;
         let mut measured = Vec::new();
         let mut series = Vec::new();
         for (recording, motion) in motions.iter().enumerate() {
             for (signal, forces) in motion.forces.iter().enumerate() {
                 let start = measured.len();
                 measured.extend(motion.thin(forces));
-                series.push(Series { recording, signal, rows: start..measured.len() });
+                series.push(ResidualSeries { recording, signal, rows: start..measured.len() });
             }
         }
-        let weights = Weights::new(series, vec![1.0; inverse.inputs.len()]);
+        let weights = ResidualWeights::new(series, vec![1.0; inverse.inputs.len()]);
         Some(InverseModel { problem, inverse, motions, weights, measured })
     }
 
@@ -191,11 +196,11 @@ impl<'a> InverseModel<'a> {
     }
 
     /// The forces along the first recording with the errors of `residual`.
-    pub fn trajectories(&self, residual: &[f64]) -> Vec<Trajectory> {
-        let one = |s: &Series| {
+    pub fn trajectories(&self, residual: &[f64]) -> Vec<SignalTrajectory> {
+        let one = |s: &ResidualSeries| {
             let input = &self.problem.bound.inputs[self.inverse.inputs[s.signal]];
             let sigma = self.weights.sigma[s.signal];
-            Trajectory {
+            SignalTrajectory {
                 name: input.name.clone(),
                 unit: input.unit.clone(),
                 times: self.motions[0].thin_times(),
@@ -223,11 +228,11 @@ impl<'a> InverseModel<'a> {
 
     /// The force that the motion needs minus the measured one, at every sample; NaN where no force can be told, as where
     /// friction holds.
-    fn raw_errors(&self, motion: &Motion, theta: &[f64]) -> Option<Vec<Vec<f64>>> {
+    fn raw_errors(&self, motion: &RecordedMotion, theta: &[f64]) -> Option<Vec<Vec<f64>>> {
         let (n, k) = (motion.states.len(), motion.forces.len());
         let mut columns = vec![vec![f64::NAN; motion.times.len()]; k];
         let (mut x, mut u) = (vec![0.0; n], vec![0.0; k]);
-        let mut local = Local::start(self.inverse.plan.clone(), motion.times[0], theta, &u).ok()?;
+        let mut local = LocalEvaluator::start(self.inverse.plan.clone(), motion.times[0], theta, &u).ok()?;
         for (t, &time) in motion.times.iter().enumerate() {
             x.iter_mut().zip(&motion.states).for_each(|(x, s)| *x = s[t]);
             u.iter_mut().zip(&motion.forces).for_each(|(u, f)| *u = f[t]);
@@ -279,8 +284,8 @@ impl LeastSquares for InverseModel<'_> {
     }
 }
 
-impl Residuals for InverseModel<'_> {
-    fn weights(&mut self) -> &mut Weights {
+impl WeightedResiduals for InverseModel<'_> {
+    fn weights(&mut self) -> &mut ResidualWeights {
         &mut self.weights
     }
 
@@ -292,11 +297,11 @@ impl Residuals for InverseModel<'_> {
 /// Step of the differences in z.
 const STEP: f64 = 1e-5;
 
-fn values(problem: &Problem<'_>, z: &[f64]) -> Vec<f64> {
+fn values(problem: &IdentificationProblem<'_>, z: &[f64]) -> Vec<f64> {
     problem.parameters(z).into_iter().map(|p| p.1).collect()
 }
 
-impl Motion {
+impl RecordedMotion {
     /// Filtered, thinned, without the ends.
     fn thin(&self, values: &[f64]) -> Vec<f64> {
         let filtered = self.low_pass.apply(values);
@@ -309,7 +314,7 @@ impl Motion {
     }
 }
 
-fn motion(inverse: &Inverse, recording: &Recording) -> Option<Motion> {
+fn motion(inverse: &ModelInversion, recording: &Recording) -> Option<RecordedMotion> {
     let times = &recording.times;
     let step = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
     let forces: Vec<Vec<f64>> = inverse.inputs.iter().map(|&k| recording.inputs[k].clone()).collect();
@@ -323,15 +328,15 @@ fn motion(inverse: &Inverse, recording: &Recording) -> Option<Motion> {
     let mut states = vec![Vec::new(); inverse.origins.len()];
     for &i in &inverse.order {
         states[i] = match inverse.origins[i] {
-            Origin::Signal(s, factor) => {
+            StateSource::Signal(s, factor) => {
                 smooth.apply(&filled(&recording.signals[s])).into_iter().map(|v| v / factor).collect()
             }
-            Origin::Rate(of) => derivative(&states[of], step),
+            StateSource::Rate(of) => derivative(&states[of], step),
         };
     }
     let rates = inverse.driven.iter().map(|&i| derivative(&states[i], step)).collect();
     let stride = ((0.4 / band) as usize).max(1);
-    Some(Motion { times: times.clone(), states, rates, forces, low_pass, stride, margin })
+    Some(RecordedMotion { times: times.clone(), states, rates, forces, low_pass, stride, margin })
 }
 
 /// The frequency, as a part of the sampling rate, below which [`POWER`] of the force's variation lies. Found by

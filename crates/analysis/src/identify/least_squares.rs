@@ -18,7 +18,7 @@ pub trait LeastSquares {
 
 /// When to stop.
 #[derive(Clone, Copy, Debug)]
-pub struct Effort {
+pub struct StoppingCriteria {
     /// Most iterations.
     pub iterations: usize,
     /// The sum of squares counts as least when it is expected to fall by less than this part.
@@ -27,15 +27,15 @@ pub struct Effort {
     pub step: f64,
 }
 
-impl Default for Effort {
+impl Default for StoppingCriteria {
     fn default() -> Self {
-        Effort { iterations: 50, gain: 1e-7, step: 1e-3 }
+        StoppingCriteria { iterations: 50, gain: 1e-7, step: 1e-3 }
     }
 }
 
 /// Where the search ended.
 #[derive(Clone, Debug)]
-pub struct Minimum {
+pub struct LeastSquaresSolution {
     /// The variables.
     pub z: Vec<f64>,
     /// The residual there.
@@ -52,14 +52,14 @@ pub struct Minimum {
 
 /// Bounds of the variables; infinite for none.
 #[derive(Clone, Debug)]
-pub struct Bounds {
+pub struct VariableBounds {
     /// Lower ones.
     pub low: Vec<f64>,
     /// Upper ones.
     pub high: Vec<f64>,
 }
 
-impl Bounds {
+impl VariableBounds {
     fn clamp(&self, j: usize, z: f64) -> f64 {
         z.max(self.low[j]).min(self.high[j])
     }
@@ -76,7 +76,12 @@ const HOPELESS: f64 = 1e12;
 /// Minimises from `start`, which must lie within the bounds. `None` where there is no value at the start.
 ///
 /// Source: K. Madsen, H. B. Nielsen, O. Tingleff, Methods for non-linear least squares problems, 2004, section 3.2.
-pub fn minimise(problem: &mut dyn LeastSquares, start: &[f64], bounds: &Bounds, effort: Effort) -> Option<Minimum> {
+pub fn minimise(
+    problem: &mut dyn LeastSquares,
+    start: &[f64],
+    bounds: &VariableBounds,
+    effort: StoppingCriteria,
+) -> Option<LeastSquaresSolution> {
     let mut z = start.to_vec();
     let mut residual = problem.residual(&z)?;
     let mut jacobian = problem.jacobian(&z, &residual)?;
@@ -113,7 +118,7 @@ pub fn minimise(problem: &mut dyn LeastSquares, start: &[f64], bounds: &Bounds, 
     converged |= damping >= HOPELESS;
     let gradient = jacobian.tr_mul(&residual);
     let at_bound = (0..z.len()).map(|j| bounds.blocks(j, z[j], gradient[j])).collect();
-    Some(Minimum { z, residual, jacobian, converged, iterations, at_bound })
+    Some(LeastSquaresSolution { z, residual, jacobian, converged, iterations, at_bound })
 }
 
 /// The next point, how much the sum of squares should fall, and whether that is too little to go on.
@@ -121,9 +126,9 @@ fn step(
     z: &[f64],
     residual: &DVector<f64>,
     jacobian: &DMatrix<f64>,
-    bounds: &Bounds,
+    bounds: &VariableBounds,
     (damping, conditions): (f64, usize),
-    effort: Effort,
+    effort: StoppingCriteria,
 ) -> Option<(Vec<f64>, f64, bool)> {
     let gradient = jacobian.tr_mul(residual);
     let mut normal = jacobian.tr_mul(jacobian);
@@ -166,17 +171,17 @@ mod tests {
         }
     }
 
-    fn bounds(low: f64, high: f64) -> Bounds {
-        Bounds { low: vec![low; 2], high: vec![high; 2] }
+    fn bounds(low: f64, high: f64) -> VariableBounds {
+        VariableBounds { low: vec![low; 2], high: vec![high; 2] }
     }
 
     #[test]
     fn finds_the_least_value_and_respects_bounds() {
-        let found = minimise(&mut Valley, &[-1.2, 1.0], &bounds(-5.0, 5.0), Effort::default()).unwrap();
+        let found = minimise(&mut Valley, &[-1.2, 1.0], &bounds(-5.0, 5.0), StoppingCriteria::default()).unwrap();
         assert!(found.converged && (found.z[0] - 1.0).abs() < 1e-4, "{found:?}");
-        let found = minimise(&mut Valley, &[-1.2, 0.2], &bounds(-5.0, 0.5), Effort::default()).unwrap();
+        let found = minimise(&mut Valley, &[-1.2, 0.2], &bounds(-5.0, 0.5), StoppingCriteria::default()).unwrap();
         assert_eq!(found.at_bound, [true, false]);
         assert!(found.converged && found.z[0] == 0.5 && (found.z[1] - 0.25).abs() < 1e-4, "{found:?}");
-        assert!(minimise(&mut Valley, &[3.0, 0.0], &bounds(-5.0, 5.0), Effort::default()).is_none());
+        assert!(minimise(&mut Valley, &[3.0, 0.0], &bounds(-5.0, 5.0), StoppingCriteria::default()).is_none());
     }
 }

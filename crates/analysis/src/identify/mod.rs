@@ -21,38 +21,38 @@ mod study;
 mod weights;
 
 pub use doubts::doubts;
-pub use fit::{Fit, SignalFit, Trajectory};
-pub use free::Free;
-pub use least_squares::{Bounds, Effort, LeastSquares, Minimum, minimise};
+pub use fit::{ParameterFit, SignalFit, SignalTrajectory};
+pub use free::EstimatedParameter;
+pub use least_squares::{LeastSquares, LeastSquaresSolution, StoppingCriteria, VariableBounds, minimise};
 pub use picture::picture;
-pub use pieces::Joints;
-pub use profile::Profile;
-pub use report::{Report, fit_words, profile_words, separation_words};
-pub use residuals::{Dependence, ResidualTest};
-pub use runs::Broken;
-pub use separate::{Blind, Separation};
-pub use starts::Starts;
-pub use study::{Asked, Identified, identify, identify_as};
+pub use pieces::ContinuityDefects;
+pub use profile::ProfileLikelihood;
+pub use report::{IdentificationReport, fit_words, profile_words, separation_words};
+pub use residuals::{InputCrossCorrelation, ResidualTest};
+pub use runs::RunFailure;
+pub use separate::{IdentifiabilityAnalysis, UnidentifiableDirection};
+pub use starts::MultistartSummary;
+pub use study::{Identified, IdentifyOptions, identify, identify_as};
 
 use crate::noise;
-use crate::study::{Bound, Recording, full_scales};
+use crate::study::{BoundStudy, Recording, full_scales};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_syntax::diag::{Code, Diagnostic};
 use doubts::foreign;
-use exact::Exact;
+use exact::ForwardSensitivityModel;
 use fit::signal_fits;
-use inverse::{Inverse, InverseModel};
+use inverse::{InverseModel, ModelInversion};
 use nalgebra::{DMatrix, DVector};
 use output_error::OutputError;
 use separate::{separate, without_rest};
 use starts::search_several;
 use std::sync::{Arc, OnceLock};
-use weights::Weights;
+use weights::ResidualWeights;
 
 /// How parameters are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// [`Method::Inverse`] where it applies, else [`Method::Output`].
+pub enum IdentifyMethod {
+    /// [`IdentifyMethod::Inverse`] where it applies, else [`IdentifyMethod::Output`].
     Auto,
     /// Runs from the inputs alone against the signals.
     Output,
@@ -62,13 +62,13 @@ pub enum Method {
 
 /// A model, its recordings and the parameters to find.
 #[derive(Clone, Debug)]
-pub struct Problem<'a> {
+pub struct IdentificationProblem<'a> {
     /// The model.
     pub model: &'a CompiledModel,
     /// The study tied to it.
-    pub bound: &'a Bound,
+    pub bound: &'a BoundStudy,
     /// The parameters to find.
-    pub free: Vec<Free>,
+    pub free: Vec<EstimatedParameter>,
     /// Per signal the sensor's range.
     pub full_scale: Vec<f64>,
     /// Per signal the noise: as the study says, or as sixth differences show.
@@ -76,8 +76,8 @@ pub struct Problem<'a> {
 }
 
 /// What methods add to least squares.
-trait Residuals: LeastSquares {
-    fn weights(&mut self) -> &mut Weights;
+trait WeightedResiduals: LeastSquares {
+    fn weights(&mut self) -> &mut ResidualWeights;
     /// How many unknowns: the parameters, then initial states.
     fn unknowns(&self) -> usize;
     /// Conditions between pieces of recordings begin to count little.
@@ -88,7 +88,7 @@ trait Residuals: LeastSquares {
     }
 }
 
-impl<'a> Problem<'a> {
+impl<'a> IdentificationProblem<'a> {
     /// Prepares an identification.
     ///
     /// # Errors
@@ -96,13 +96,13 @@ impl<'a> Problem<'a> {
     /// samples than unknowns.
     pub fn new(
         model: &'a CompiledModel,
-        bound: &'a Bound,
+        bound: &'a BoundStudy,
         train: &[Recording],
-    ) -> Result<Problem<'a>, Vec<Diagnostic>> {
+    ) -> Result<IdentificationProblem<'a>, Vec<Diagnostic>> {
         let system = &model.system;
         let mut values = system.layout.values();
         system.evaluate_parameters(&mut values, &[]);
-        let free: Vec<Free> = bound
+        let free: Vec<EstimatedParameter> = bound
             .parameters
             .iter()
             .filter_map(|p| {
@@ -110,7 +110,7 @@ impl<'a> Problem<'a> {
                 let start = values[system.layout.var(v)];
                 let min = system.min(v, &values).unwrap_or(f64::NEG_INFINITY);
                 let max = system.max(v, &values).unwrap_or(f64::INFINITY);
-                Free::new(p, start, min, max, system.nominal(v, &values))
+                EstimatedParameter::new(p, start, min, max, system.nominal(v, &values))
             })
             .collect();
         let mistakes = mistakes(bound, &free, train);
@@ -119,7 +119,7 @@ impl<'a> Problem<'a> {
         }
         let full_scale = full_scales(bound, train);
         let noise = (0..bound.signals.len()).map(|k| noise(bound, train, k, full_scale[k])).collect();
-        Ok(Problem { model, bound, free, full_scale, noise })
+        Ok(IdentificationProblem { model, bound, free, full_scale, noise })
     }
 
     /// What is known beforehand, as residuals.
@@ -143,8 +143,8 @@ impl<'a> Problem<'a> {
         self.full_scale.iter().zip(&self.noise).map(|(f, n)| n.max(1e-6 * f).max(f64::MIN_POSITIVE)).collect()
     }
 
-    fn bounds(&self, unknowns: usize) -> Bounds {
-        let mut bounds = Bounds { low: vec![f64::NEG_INFINITY; unknowns], high: vec![f64::INFINITY; unknowns] };
+    fn bounds(&self, unknowns: usize) -> VariableBounds {
+        let mut bounds = VariableBounds { low: vec![f64::NEG_INFINITY; unknowns], high: vec![f64::INFINITY; unknowns] };
         for (j, free) in self.free.iter().enumerate() {
             // a logarithmic scale reaches far, but not to numbers without meaning
             let far = if free.logarithmic { 20.0 } else { f64::INFINITY };
@@ -155,7 +155,7 @@ impl<'a> Problem<'a> {
     }
 }
 
-fn mistakes(bound: &Bound, free: &[Free], train: &[Recording]) -> Vec<Diagnostic> {
+fn mistakes(bound: &BoundStudy, free: &[EstimatedParameter], train: &[Recording]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     if free.is_empty() {
         let d = Diagnostic::new(Code::BadStudy, "the study has no parameters to find");
@@ -181,7 +181,7 @@ fn mistakes(bound: &Bound, free: &[Free], train: &[Recording]) -> Vec<Diagnostic
 }
 
 /// The noise of a signal: its accuracy where the study says it, else what sixth differences show.
-fn noise(bound: &Bound, train: &[Recording], k: usize, full_scale: f64) -> f64 {
+fn noise(bound: &BoundStudy, train: &[Recording], k: usize, full_scale: f64) -> f64 {
     bound.signals[k]
         .deviation(full_scale)
         .unwrap_or_else(|| train.iter().map(|r| noise::white(&[&r.signals[k]])).fold(0.0, f64::max))
@@ -189,13 +189,13 @@ fn noise(bound: &Bound, train: &[Recording], k: usize, full_scale: f64) -> f64 {
 
 /// An identification under way: the method chosen, and what can be found.
 pub struct Identification<'a> {
-    problem: &'a Problem<'a>,
+    problem: &'a IdentificationProblem<'a>,
     train: &'a [Recording],
-    inverse: Option<Inverse>,
+    inverse: Option<ModelInversion>,
     /// What carries derivatives along in runs, or why there is nothing.
-    exact: OnceLock<Result<Arc<Exact>, String>>,
+    exact: OnceLock<Result<Arc<ForwardSensitivityModel>, String>>,
     /// What can be found at all, judged at the start values.
-    pub separation: Separation,
+    pub separation: IdentifiabilityAnalysis,
     /// Variables whose measurement would tell the members of each blind group apart, best first.
     pub advice: Vec<Vec<String>>,
     /// Warnings about columns that seem to have another sign or unit than the study says.
@@ -208,9 +208,13 @@ impl<'a> Identification<'a> {
     /// # Errors
     /// [`Code::BadStudy`] when the method does not apply; [`Code::StepTooSmall`] and others when the model cannot follow
     /// the recordings with the start values.
-    pub fn new(problem: &'a Problem<'a>, train: &'a [Recording], method: Method) -> Result<Self, Diagnostic> {
-        let inverse = if method == Method::Output { None } else { Inverse::new(problem) };
-        if inverse.is_none() && method == Method::Inverse {
+    pub fn new(
+        problem: &'a IdentificationProblem<'a>,
+        train: &'a [Recording],
+        method: IdentifyMethod,
+    ) -> Result<Self, Diagnostic> {
+        let inverse = if method == IdentifyMethod::Output { None } else { ModelInversion::new(problem) };
+        if inverse.is_none() && method == IdentifyMethod::Inverse {
             let d = Diagnostic::new(Code::BadStudy, "the model cannot be inverted with this study");
             return Err(d
                 .note("the inputs must be measured forces or torques (N, N.m), one for each degree of freedom")
@@ -221,7 +225,7 @@ impl<'a> Identification<'a> {
             train,
             inverse,
             exact: OnceLock::new(),
-            separation: Separation { rank: 0, condition: 1.0, blind: Vec::new(), deviation: Vec::new() },
+            separation: IdentifiabilityAnalysis { rank: 0, condition: 1.0, blind: Vec::new(), deviation: Vec::new() },
             advice: Vec::new(),
             suspicions: Vec::new(),
         };
@@ -230,8 +234,8 @@ impl<'a> Identification<'a> {
     }
 
     /// Whether the inverse model is used.
-    pub fn method(&self) -> Method {
-        if self.inverse.is_some() { Method::Inverse } else { Method::Output }
+    pub fn method(&self) -> IdentifyMethod {
+        if self.inverse.is_some() { IdentifyMethod::Inverse } else { IdentifyMethod::Output }
     }
 
     fn judge(&mut self) -> Result<(), Diagnostic> {
@@ -262,18 +266,18 @@ impl<'a> Identification<'a> {
 
     fn output_error(&self) -> Result<OutputError<'_>, Diagnostic> {
         let mut model = OutputError::new(self.problem, self.train, None).map_err(|b| cannot_follow(Some(&b)))?;
-        let exact = self.exact.get_or_init(|| Exact::new(self.problem).map(Arc::new));
+        let exact = self.exact.get_or_init(|| ForwardSensitivityModel::new(self.problem).map(Arc::new));
         model.differentiate_by(exact.clone());
         Ok(model)
     }
 
     /// Variables that move most, against their range, when the parameters of a blind group move against each other.
-    fn what_separates(&self, blind: &Blind) -> Vec<String> {
+    fn what_separates(&self, blind: &UnidentifiableDirection) -> Vec<String> {
         let Ok(runs) = OutputError::new(self.problem, &self.train[..1], None) else { return Vec::new() };
         let flat = &self.problem.model.flat;
         let shown = (0..).map(bramah_expr::VarId).zip(&flat.variables).filter(|(_, v)| {
             !v.hidden
-                && v.ty == bramah_model::flat::Type::Real
+                && v.ty == bramah_model::flat::ScalarType::Real
                 && v.variability == bramah_model::flat::Variability::Continuous
         });
         let measured = |v: &bramah_expr::VarId| self.problem.bound.signals.iter().any(|s| s.variable == *v);
@@ -294,17 +298,17 @@ impl<'a> Identification<'a> {
     ///
     /// # Errors
     /// As [`Identification::new`].
-    pub fn fit(&self) -> Result<Fit, Diagnostic> {
+    pub fn fit(&self) -> Result<ParameterFit, Diagnostic> {
         self.fit_from(1, 1)
     }
 
     /// Searches from the values in the model and from `starts - 1` places around them, drawn within bounds and tolerances
-    /// and at most a factor of e away; the best end counts, and [`Fit::starts`] tells where the others led. The same
+    /// and at most a factor of e away; the best end counts, and [`ParameterFit::starts`] tells where the others led. The same
     /// `seed` draws the same places.
     ///
     /// # Errors
     /// As [`Identification::new`].
-    pub fn fit_from(&self, starts: usize, seed: u64) -> Result<Fit, Diagnostic> {
+    pub fn fit_from(&self, starts: usize, seed: u64) -> Result<ParameterFit, Diagnostic> {
         match self.inverse_model()? {
             Some(mut model) => {
                 let found = search_several(self.problem, &mut model, &[], starts, seed);
@@ -341,14 +345,14 @@ impl<'a> Identification<'a> {
     ///
     /// # Errors
     /// When the model cannot follow them.
-    pub fn judge_held(&self, fit: &Fit, held: &[Recording]) -> Result<Vec<SignalFit>, Diagnostic> {
+    pub fn judge_held(&self, fit: &ParameterFit, held: &[Recording]) -> Result<Vec<SignalFit>, Diagnostic> {
         let z: Vec<f64> = self.problem.free.iter().zip(&fit.values).map(|(f, &v)| f.place(v)).collect();
         if let Some(inverse) = &self.inverse {
             let model = InverseModel::new(self.problem, inverse, held);
             let mut model =
                 model.ok_or_else(|| Diagnostic::new(Code::BadStudy, "a held recording is too short to judge by"))?;
             let residual = model.residual(&z).ok_or_else(|| cannot_follow(None))?;
-            let minimum = Minimum {
+            let minimum = LeastSquaresSolution {
                 jacobian: DMatrix::zeros(residual.len(), z.len()),
                 residual,
                 converged: true,
@@ -364,8 +368,8 @@ impl<'a> Identification<'a> {
         if whole.frees_states() {
             let mut first = whole.beginning(beginning);
             let unbounded =
-                Bounds { low: vec![f64::NEG_INFINITY; states.len()], high: vec![f64::INFINITY; states.len()] };
-            if let Some(found) = minimise(&mut first, &states, &unbounded, Effort::default()) {
+                VariableBounds { low: vec![f64::NEG_INFINITY; states.len()], high: vec![f64::INFINITY; states.len()] };
+            if let Some(found) = minimise(&mut first, &states, &unbounded, StoppingCriteria::default()) {
                 states = found.z;
             }
             for recording in &mut scored {
@@ -386,7 +390,7 @@ fn beginning(times: &[f64]) -> f64 {
 }
 
 /// The sum of squares of the sensitivities at the start, initial states taken out.
-fn information(model: &mut dyn Residuals, parameters: usize) -> Result<DMatrix<f64>, Option<Broken>> {
+fn information(model: &mut dyn WeightedResiduals, parameters: usize) -> Result<DMatrix<f64>, Option<RunFailure>> {
     let z = vec![0.0; model.unknowns()];
     let residual = model.residual(&z).ok_or(None)?;
     let jacobian = model.jacobian(&z, &residual).ok_or(None)?;
@@ -405,23 +409,32 @@ fn all_states(jacobian: &DMatrix<f64>, parameters: usize) -> nalgebra::DMatrixVi
 }
 
 /// Minimises from a place, with the deviations of the signals as they are.
-fn search_once(problem: &Problem<'_>, model: &mut dyn Residuals, from: &[f64]) -> Option<Minimum> {
+fn search_once(
+    problem: &IdentificationProblem<'_>,
+    model: &mut dyn WeightedResiduals,
+    from: &[f64],
+) -> Option<LeastSquaresSolution> {
     let bounds = problem.bounds(model.unknowns());
-    let mut minimum = minimise(&mut Shared(model), from, &bounds, Effort::default())?;
+    let mut minimum = minimise(&mut BorrowedResiduals(model), from, &bounds, StoppingCriteria::default())?;
     while model.tighten() {
         let iterations = minimum.iterations;
-        minimum = minimise(&mut Shared(model), &minimum.z, &bounds, Effort::default())?;
+        minimum = minimise(&mut BorrowedResiduals(model), &minimum.z, &bounds, StoppingCriteria::default())?;
         minimum.iterations += iterations;
     }
     Some(minimum)
 }
 
 /// Minimises, takes the deviations of the signals from the errors, and minimises again until they stay.
-fn search(problem: &Problem<'_>, model: &mut dyn Residuals, floor: &[f64], from: &[f64]) -> Option<Minimum> {
+fn search(
+    problem: &IdentificationProblem<'_>,
+    model: &mut dyn WeightedResiduals,
+    floor: &[f64],
+    from: &[f64],
+) -> Option<LeastSquaresSolution> {
     let floor = if floor.is_empty() { vec![0.0; model.weights().sigma.len()] } else { floor.to_vec() };
     let mut z = from.to_vec();
     model.loosen();
-    let start = Shared(model).residual(&z)?;
+    let start = BorrowedResiduals(model).residual(&z)?;
     model.weights().learn(start.as_slice(), &floor);
     let mut iterations = 0;
     for round in 0..5 {
@@ -441,9 +454,9 @@ fn search(problem: &Problem<'_>, model: &mut dyn Residuals, floor: &[f64], from:
 }
 
 /// Lets a search borrow a model between two looks at its weights.
-struct Shared<'a>(&'a mut dyn Residuals);
+struct BorrowedResiduals<'a>(&'a mut dyn WeightedResiduals);
 
-impl LeastSquares for Shared<'_> {
+impl LeastSquares for BorrowedResiduals<'_> {
     fn residual(&mut self, z: &[f64]) -> Option<DVector<f64>> {
         self.0.residual(z)
     }
@@ -466,7 +479,7 @@ fn effect(base: &[f64], moved: &[f64]) -> f64 {
     if size > 0.0 && range > 0.0 { change / range.max(1e-3 * size) } else { 0.0 }
 }
 
-fn cannot_follow(broken: Option<&Broken>) -> Diagnostic {
+fn cannot_follow(broken: Option<&RunFailure>) -> Diagnostic {
     let d = Diagnostic::new(Code::StepTooSmall, "the model cannot follow the recording with its start values");
     match broken {
         Some(b) if b.time.is_finite() => {

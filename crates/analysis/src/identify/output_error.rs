@@ -3,13 +3,13 @@
 //! Runs carry their derivatives along, which is checked once against a difference; where this fails, derivatives are
 //! central differences.
 
-use super::exact::Exact;
+use super::exact::ForwardSensitivityModel;
 use super::least_squares::LeastSquares;
-use super::pieces::{self, Case, FreeState, Leg};
-use super::runs::{Broken, Runner, Track};
-use super::weights::Weights;
-use super::{Problem, Residuals, Trajectory};
-use crate::estimate::Series;
+use super::pieces::{self, FreeState, RecordingCase, ShootingInterval};
+use super::runs::{ModelRunner, RunFailure, RunInputs};
+use super::weights::ResidualWeights;
+use super::{IdentificationProblem, SignalTrajectory, WeightedResiduals};
+use crate::estimate::ResidualSeries;
 use crate::study::Recording;
 use bramah_expr::VarId;
 use bramah_solve::State;
@@ -19,27 +19,27 @@ use std::sync::Arc;
 
 /// Residual and derivatives of runs along recordings.
 pub struct OutputError<'a> {
-    pub(super) problem: &'a Problem<'a>,
+    pub(super) problem: &'a IdentificationProblem<'a>,
     /// How runs are made.
-    pub(super) runner: Runner<'a>,
+    pub(super) runner: ModelRunner<'a>,
     wanted: Vec<VarId>,
-    pub(super) cases: Vec<Case>,
-    pub(super) weights: Weights,
+    pub(super) cases: Vec<RecordingCase>,
+    pub(super) weights: ResidualWeights,
     /// Parameters in z; 0 where only initial states are searched for.
     pub(super) parameters: usize,
     /// Parameter values where they are not searched for.
     fixed: Vec<f64>,
     /// What carries derivatives along, where there is anything.
-    exact: Option<Arc<Exact>>,
+    exact: Option<Arc<ForwardSensitivityModel>>,
     /// Per recording whether they hold: not known yet, or why they do not.
-    trust: Vec<Trust>,
+    trust: Vec<DerivativeValidity>,
     /// Why the last run failed.
-    pub broken: Option<Broken>,
+    pub broken: Option<RunFailure>,
 }
 
 /// Whether derivatives carried along hold along a recording.
 #[derive(Clone, Debug, PartialEq)]
-enum Trust {
+enum DerivativeValidity {
     Unknown,
     Holds,
     /// Why not.
@@ -62,31 +62,31 @@ impl<'a> OutputError<'a> {
     /// # Errors
     /// When the model cannot start.
     pub fn new(
-        problem: &'a Problem<'a>,
+        problem: &'a IdentificationProblem<'a>,
         recordings: &[Recording],
         fixed: Option<&[f64]>,
-    ) -> Result<OutputError<'a>, Broken> {
+    ) -> Result<OutputError<'a>, RunFailure> {
         let tolerance = problem.model.flat.experiment.tolerance.unwrap_or(1e-6).min(1e-6) * 1e-2;
-        let runner = Runner { model: problem.model, tolerance };
+        let runner = ModelRunner { model: problem.model, tolerance };
         let parameters = if fixed.is_some() { 0 } else { problem.free.len() };
         let fixed = fixed.map_or_else(|| vec![0.0; problem.free.len()], <[f64]>::to_vec);
         let mut cases = Vec::new();
         let mut next = parameters;
         for recording in recordings {
-            let track = Track::new(problem.bound, recording);
+            let track = RunInputs::new(problem.bound, recording);
             let states = free_states(problem, &runner, &track, &fixed)?;
             let mut legs = Vec::new();
             for first in pieces::cuts(track.times.len(), recording.pieces) {
                 let states = if first == 0 { states.clone() } else { inner_states(problem) };
                 let places = next..next + states.len();
                 next = places.end;
-                legs.push(Leg { first, states, places });
+                legs.push(ShootingInterval { first, states, places });
             }
-            cases.push(Case { track, measured: recording.signals.clone(), legs, from: None });
+            cases.push(RecordingCase { track, measured: recording.signals.clone(), legs, from: None });
         }
-        let weights = Weights::new(series(&cases), problem.first_deviations());
+        let weights = ResidualWeights::new(series(&cases), problem.first_deviations());
         let wanted = problem.bound.signals.iter().map(|s| s.variable).collect();
-        let trust = vec![Trust::Unknown; cases.len()];
+        let trust = vec![DerivativeValidity::Unknown; cases.len()];
         let mut all = OutputError {
             problem,
             runner,
@@ -106,33 +106,33 @@ impl<'a> OutputError<'a> {
     }
 
     /// The same problem for states at the start of one case alone, parameters standing still.
-    pub(super) fn single(&self, case: Case, parameters: &[f64]) -> OutputError<'a> {
+    pub(super) fn single(&self, case: RecordingCase, parameters: &[f64]) -> OutputError<'a> {
         let cases = vec![case];
         OutputError {
             problem: self.problem,
             runner: self.runner,
             wanted: self.wanted.clone(),
-            weights: Weights::new(series(&cases), self.weights.sigma.clone()),
+            weights: ResidualWeights::new(series(&cases), self.weights.sigma.clone()),
             cases,
             parameters: 0,
             fixed: parameters.to_vec(),
             exact: None,
-            trust: vec![Trust::Fails("it is not asked for".to_owned())],
+            trust: vec![DerivativeValidity::Fails("it is not asked for".to_owned())],
             broken: None,
         }
     }
 
     /// Takes derivatives carried along, or differences for the reason given.
-    pub fn differentiate_by(&mut self, exact: Result<Arc<Exact>, String>) {
+    pub fn differentiate_by(&mut self, exact: Result<Arc<ForwardSensitivityModel>, String>) {
         match exact {
             Ok(exact) => self.exact = Some(exact),
-            Err(why) => self.trust.fill(Trust::Fails(why)),
+            Err(why) => self.trust.fill(DerivativeValidity::Fails(why)),
         }
     }
 
     /// Why derivatives were differences along some recording.
     pub fn differences(&self) -> Option<&str> {
-        self.trust.iter().find_map(|t| if let Trust::Fails(why) = t { Some(why.as_str()) } else { None })
+        self.trust.iter().find_map(|t| if let DerivativeValidity::Fails(why) = t { Some(why.as_str()) } else { None })
     }
 
     /// The same with only the first seconds of each recording.
@@ -161,7 +161,7 @@ impl<'a> OutputError<'a> {
     ///
     /// # Errors
     /// When the run does not reach the end.
-    pub fn simulate(&self, case: usize, z: &[f64], wanted: &[VarId]) -> Result<Vec<Vec<f64>>, Broken> {
+    pub fn simulate(&self, case: usize, z: &[f64], wanted: &[VarId]) -> Result<Vec<Vec<f64>>, RunFailure> {
         self.trajectory(case, z, wanted).map(|run| run.signals)
     }
 
@@ -174,7 +174,7 @@ impl<'a> OutputError<'a> {
         z: &[f64],
         before: Option<State>,
         wanted: &[VarId],
-    ) -> Result<(Vec<Vec<f64>>, State), Broken> {
+    ) -> Result<(Vec<Vec<f64>>, State), RunFailure> {
         let values = if self.parameters > 0 { &z[..self.parameters] } else { self.fixed.as_slice() };
         let parameters = self.problem.parameters(values);
         let of = &self.cases[case];
@@ -193,9 +193,9 @@ impl<'a> OutputError<'a> {
     }
 
     /// All legs of a recording.
-    fn trajectory(&self, case: usize, z: &[f64], wanted: &[VarId]) -> Result<Values, Broken> {
+    fn trajectory(&self, case: usize, z: &[f64], wanted: &[VarId]) -> Result<ShootingValues, RunFailure> {
         let of = &self.cases[case];
-        let mut all = Values { signals: vec![Vec::new(); wanted.len()], jumps: Vec::new() };
+        let mut all = ShootingValues { signals: vec![Vec::new(); wanted.len()], jumps: Vec::new() };
         let mut before = None;
         for leg in 0..of.legs.len() {
             let (values, end) = self.leg_values(case, leg, z, before, wanted)?;
@@ -214,7 +214,7 @@ impl<'a> OutputError<'a> {
         z: &[f64],
         before: Option<State>,
         wanted: &[VarId],
-    ) -> Result<(Values, State), Broken> {
+    ) -> Result<(ShootingValues, State), RunFailure> {
         let of = &self.cases[case];
         let asked = with_handed(wanted, of.handed(leg));
         let (mut columns, end) = self.leg(case, leg, z, before, &asked)?;
@@ -225,11 +225,11 @@ impl<'a> OutputError<'a> {
         };
         let jumps = handed.iter().zip(of.handed(leg)).zip(&z[next]).map(jump).collect();
         columns.iter_mut().for_each(|c| c.truncate(of.samples(leg).len()));
-        Ok((Values { signals: columns, jumps }, end))
+        Ok((ShootingValues { signals: columns, jumps }, end))
     }
 
     /// Errors of one recording over the deviations in the order of its rows, and its jumps over theirs.
-    fn errors(&self, case: usize, z: &[f64]) -> Result<Vec<f64>, Broken> {
+    fn errors(&self, case: usize, z: &[f64]) -> Result<Vec<f64>, RunFailure> {
         let mut values = self.trajectory(case, z, &self.wanted)?;
         for (simulated, measured) in values.signals.iter_mut().zip(&self.cases[case].measured) {
             simulated.iter_mut().zip(measured).for_each(|(s, m)| *s -= m);
@@ -238,12 +238,12 @@ impl<'a> OutputError<'a> {
         if out.iter().all(|v| v.is_finite()) {
             Ok(out)
         } else {
-            Err(Broken { time: f64::NAN, message: "a value is not finite".into() })
+            Err(RunFailure { time: f64::NAN, message: "a value is not finite".into() })
         }
     }
 
     /// Values along one recording over the deviations, where something was measured, and jumps over theirs.
-    fn weighed(&self, case: usize, values: &Values) -> Vec<f64> {
+    fn weighed(&self, case: usize, values: &ShootingValues) -> Vec<f64> {
         let mut out = Vec::new();
         for (k, (column, measured)) in values.signals.iter().zip(&self.cases[case].measured).enumerate() {
             let known = column.iter().zip(measured).filter(|(_, m)| !m.is_nan());
@@ -262,17 +262,17 @@ impl<'a> OutputError<'a> {
 /// What runs along a recording say: values of signals at the samples, and how far each leg misses the start of the next,
 /// in the sizes of the states; or the derivatives of both.
 #[derive(Clone, Debug, Default)]
-struct Values {
+struct ShootingValues {
     signals: Vec<Vec<f64>>,
     jumps: Vec<f64>,
 }
 
-impl Values {
+impl ShootingValues {
     /// (a - b)/h
-    fn over(a: &Values, b: &Values, h: f64) -> Values {
+    fn over(a: &ShootingValues, b: &ShootingValues, h: f64) -> ShootingValues {
         let over = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) / h).collect();
         let signals = a.signals.iter().zip(&b.signals).map(|(a, b)| over(a, b)).collect();
-        Values { signals, jumps: over(&a.jumps, &b.jumps) }
+        ShootingValues { signals, jumps: over(&a.jumps, &b.jumps) }
     }
 }
 
@@ -283,7 +283,7 @@ fn with_handed(wanted: &[VarId], handed: &[FreeState]) -> Vec<VarId> {
 impl LeastSquares for OutputError<'_> {
     fn residual(&mut self, z: &[f64]) -> Option<DVector<f64>> {
         let this = &*self;
-        let found: Vec<Result<Vec<f64>, Broken>> =
+        let found: Vec<Result<Vec<f64>, RunFailure>> =
             (0..this.cases.len()).into_par_iter().map(|c| this.errors(c, z)).collect();
         let (mut all, mut last) = (Vec::new(), Vec::new());
         for (errors, case) in found.into_iter().zip(&this.cases) {
@@ -351,13 +351,13 @@ impl LeastSquares for OutputError<'_> {
 
 impl OutputError<'_> {
     /// The signals along the first recording with the errors of `residual`.
-    pub fn trajectories(&self, recordings: &[Recording], residual: &[f64]) -> Vec<Trajectory> {
-        let one = |s: &Series| {
+    pub fn trajectories(&self, recordings: &[Recording], residual: &[f64]) -> Vec<SignalTrajectory> {
+        let one = |s: &ResidualSeries| {
             let signal = &self.problem.bound.signals[s.signal];
             let measured = &recordings[0].signals[s.signal];
             let known = || recordings[0].times.iter().zip(measured).filter(|(_, m)| !m.is_nan());
             let sigma = self.weights.sigma[s.signal];
-            Trajectory {
+            SignalTrajectory {
                 name: signal.name.clone(),
                 unit: signal.unit.clone(),
                 times: known().map(|k| *k.0).collect(),
@@ -379,7 +379,7 @@ impl OutputError<'_> {
             .into_par_iter()
             .map(|c| {
                 let columns = this.exactly(c, z)?;
-                if this.trust[c] == Trust::Unknown {
+                if this.trust[c] == DerivativeValidity::Unknown {
                     this.agrees(c, z, &columns).map(|()| columns)
                 } else {
                     Ok(columns)
@@ -388,11 +388,11 @@ impl OutputError<'_> {
             .collect();
         let judged = found.into_iter().zip(&mut self.trust).map(|(result, trust)| match result {
             Ok(columns) => {
-                *trust = Trust::Holds;
+                *trust = DerivativeValidity::Holds;
                 Some(columns)
             }
             Err(why) => {
-                *trust = Trust::Fails(why);
+                *trust = DerivativeValidity::Fails(why);
                 None
             }
         });
@@ -401,17 +401,17 @@ impl OutputError<'_> {
 
     /// Derivatives of the weighed errors of a recording, carried along by its run.
     fn exactly(&self, case: usize, z: &[f64]) -> Result<Vec<Vec<f64>>, String> {
-        if let Trust::Fails(why) = &self.trust[case] {
+        if let DerivativeValidity::Fails(why) = &self.trust[case] {
             return Err(why.clone());
         }
         let exact = self.exact.as_ref().filter(|_| self.parameters > 0).ok_or("they were not asked for")?;
         let of = &self.cases[case];
         let free = &self.problem.free;
-        let nothing = || Values {
+        let nothing = || ShootingValues {
             signals: vec![vec![0.0; of.track.times.len()]; self.wanted.len()],
             jumps: vec![0.0; of.conditions()],
         };
-        let mut all: Vec<Values> = self.moves(case).map(|_| nothing()).collect();
+        let mut all: Vec<ShootingValues> = self.moves(case).map(|_| nothing()).collect();
         let (mut before, mut jump) = (None, 0);
         for (k, leg) in of.legs.iter().enumerate() {
             let (track, handed) = (of.along(k), of.handed(k));
@@ -487,16 +487,16 @@ impl OutputError<'_> {
             self.part(case, j, &moved, ends).ok()
         };
         let slope = match (at(STEP), at(-STEP)) {
-            (Some(up), Some(down)) => Values::over(&up, &down, 2.0 * STEP),
-            (Some(up), None) => Values::over(&up, &at(0.0)?, STEP),
-            (None, Some(down)) => Values::over(&at(0.0)?, &down, STEP),
+            (Some(up), Some(down)) => ShootingValues::over(&up, &down, 2.0 * STEP),
+            (Some(up), None) => ShootingValues::over(&up, &at(0.0)?, STEP),
+            (None, Some(down)) => ShootingValues::over(&at(0.0)?, &down, STEP),
             (None, None) => return None,
         };
         Some(self.weighed(case, &slope)).filter(|column| column.iter().all(|v| v.is_finite()))
     }
 
     /// Where the legs of a cut recording end.
-    fn ends(&self, case: usize, z: &[f64]) -> Result<Vec<State>, Broken> {
+    fn ends(&self, case: usize, z: &[f64]) -> Result<Vec<State>, RunFailure> {
         let legs = self.cases[case].legs.len();
         let mut ends: Vec<State> = Vec::new();
         for leg in 0..if legs > 1 { legs } else { 0 } {
@@ -507,12 +507,12 @@ impl OutputError<'_> {
     }
 
     /// What an unknown moves along a recording: the start of a piece its own leg alone, all else stays 0.
-    fn part(&self, case: usize, j: usize, z: &[f64], ends: &[State]) -> Result<Values, Broken> {
+    fn part(&self, case: usize, j: usize, z: &[f64], ends: &[State]) -> Result<ShootingValues, RunFailure> {
         let of = &self.cases[case];
         let Some(leg) = (1..of.legs.len()).find(|&k| of.legs[k].places.contains(&j)) else {
             return self.trajectory(case, z, &self.wanted);
         };
-        let mut all = Values {
+        let mut all = ShootingValues {
             signals: vec![vec![0.0; of.track.times.len()]; self.wanted.len()],
             jumps: vec![0.0; of.conditions()],
         };
@@ -531,8 +531,8 @@ impl OutputError<'_> {
     }
 }
 
-impl Residuals for OutputError<'_> {
-    fn weights(&mut self) -> &mut Weights {
+impl WeightedResiduals for OutputError<'_> {
+    fn weights(&mut self) -> &mut ResidualWeights {
         &mut self.weights
     }
 
@@ -554,13 +554,13 @@ impl Residuals for OutputError<'_> {
     }
 }
 
-fn series(cases: &[Case]) -> Vec<Series> {
+fn series(cases: &[RecordingCase]) -> Vec<ResidualSeries> {
     let mut series = Vec::new();
     let mut row = 0;
     for (recording, case) in cases.iter().enumerate() {
         for (signal, measured) in case.measured.iter().enumerate() {
             let known = measured.iter().filter(|m| !m.is_nan()).count();
-            series.push(Series { recording, signal, rows: row..row + known });
+            series.push(ResidualSeries { recording, signal, rows: row..row + known });
             row += known;
         }
     }
@@ -568,7 +568,12 @@ fn series(cases: &[Case]) -> Vec<Series> {
 }
 
 /// The states whose start the model leaves to chance: those that no parameter of the study moves.
-fn free_states(problem: &Problem<'_>, runner: &Runner<'_>, track: &Track, z: &[f64]) -> Result<Vec<FreeState>, Broken> {
+fn free_states(
+    problem: &IdentificationProblem<'_>,
+    runner: &ModelRunner<'_>,
+    track: &RunInputs,
+    z: &[f64],
+) -> Result<Vec<FreeState>, RunFailure> {
     let base = runner.start(track, &problem.parameters(z))?;
     let moved: Vec<State> = (0..problem.free.len())
         .into_par_iter()
@@ -593,7 +598,7 @@ fn free_states(problem: &Problem<'_>, runner: &Runner<'_>, track: &Track, z: &[f
 }
 
 /// All states, for the start of a piece.
-fn inner_states(problem: &Problem<'_>) -> Vec<FreeState> {
+fn inner_states(problem: &IdentificationProblem<'_>) -> Vec<FreeState> {
     let system = &problem.model.system;
     let mut values = system.layout.values();
     system.evaluate_parameters(&mut values, &[]);

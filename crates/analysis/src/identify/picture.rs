@@ -1,18 +1,18 @@
 //! An identification in pictures: the signals met, what is left over, confidence ellipses, profiles.
 
 use super::chance::{pair_size, student};
-use super::{Fit, Problem, Profile};
-use bramah_plot::{Band, Figure, Panel, Series};
+use super::{IdentificationProblem, ParameterFit, ProfileLikelihood};
+use bramah_plot::{Figure, FigurePanel, PlotBand, PlotSeries};
 
 /// Most pairs of parameters drawn, those with the strongest correlation first.
 const PAIRS: usize = 6;
 /// Points of an ellipse.
 const POINTS: u32 = 72;
 
-impl Fit {
+impl ParameterFit {
     /// The edge of the region in which two parameters lie together with 95 %, in their units; `None` where the data say
     /// nothing about one of them.
-    pub fn ellipse(&self, problem: &Problem<'_>, i: usize, j: usize) -> Option<(Vec<f64>, Vec<f64>)> {
+    pub fn ellipse(&self, problem: &IdentificationProblem<'_>, i: usize, j: usize) -> Option<(Vec<f64>, Vec<f64>)> {
         let (a, b) = (self.spread[i].sqrt(), self.spread[j].sqrt());
         let r = self.correlation[(i, j)].clamp(-1.0, 1.0);
         if !(a * b).is_finite() || a * b <= 0.0 {
@@ -30,8 +30,8 @@ impl Fit {
 }
 
 /// All panels: signals, autocorrelations, ellipses, profiles.
-pub fn picture(problem: &Problem<'_>, fit: &Fit, profiles: &[Profile]) -> Figure {
-    let mut panels: Vec<Panel> = fit.trajectories.iter().map(trajectory).collect();
+pub fn picture(problem: &IdentificationProblem<'_>, fit: &ParameterFit, profiles: &[ProfileLikelihood]) -> Figure {
+    let mut panels: Vec<FigurePanel> = fit.trajectories.iter().map(trajectory).collect();
     panels.extend(fit.residuals.iter().map(autocorrelation));
     panels.extend(pairs(fit).into_iter().filter_map(|(i, j)| pair(problem, fit, i, j)));
     panels.extend(profiles.iter().map(|p| profile(problem, fit, p)));
@@ -42,44 +42,44 @@ fn label(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_owned() } else { format!("{name} in {unit}") }
 }
 
-fn trajectory(trajectory: &super::Trajectory) -> Panel {
+fn trajectory(trajectory: &super::SignalTrajectory) -> FigurePanel {
     // dashes let the measured trajectory show through where the model meets it
-    let line = |name: &str, y: Vec<f64>, colour: usize, dashed: bool| Series {
+    let line = |name: &str, y: Vec<f64>, colour: usize, dashed: bool| PlotSeries {
         name: format!("{} {name}", trajectory.name),
         x: trajectory.times.clone(),
         y,
         colour,
         dashed,
-        ..Series::default()
+        ..PlotSeries::default()
     };
     let model = trajectory.measured.iter().zip(&trajectory.errors).map(|(m, e)| m + e).collect();
-    Panel {
+    FigurePanel {
         x_label: "time in s".to_owned(),
         y_label: label(&trajectory.name, &trajectory.unit),
         series: vec![line("measured", trajectory.measured.clone(), 6, false), line("of the model", model, 0, true)],
-        ..Panel::default()
+        ..FigurePanel::default()
     }
 }
 
-fn autocorrelation(test: &super::ResidualTest) -> Panel {
+fn autocorrelation(test: &super::ResidualTest) -> FigurePanel {
     let count = test.autocorrelation.len() as f64;
-    let mut stems = Series { name: format!("errors of {}", test.name), ..Series::default() };
+    let mut stems = PlotSeries { name: format!("errors of {}", test.name), ..PlotSeries::default() };
     for (lag, r) in (1..).map(f64::from).zip(&test.autocorrelation) {
         stems.x.extend([lag, lag, f64::NAN]);
         stems.y.extend([0.0, *r, f64::NAN]);
     }
     let edge = test.bound();
-    Panel {
+    FigurePanel {
         x_label: "lag in samples".to_owned(),
         y_label: "autocorrelation".to_owned(),
         series: vec![stems],
-        bands: vec![Band { x: vec![0.0, count + 1.0], low: vec![-edge; 2], high: vec![edge; 2], colour: 6 }],
-        ..Panel::default()
+        bands: vec![PlotBand { x: vec![0.0, count + 1.0], low: vec![-edge; 2], high: vec![edge; 2], colour: 6 }],
+        ..FigurePanel::default()
     }
 }
 
 /// The pairs to draw, strongest correlation first.
-fn pairs(fit: &Fit) -> Vec<(usize, usize)> {
+fn pairs(fit: &ParameterFit) -> Vec<(usize, usize)> {
     let p = fit.values.len();
     let mut all: Vec<(usize, usize)> = (0..p).flat_map(|i| (i + 1..p).map(move |j| (i, j))).collect();
     all.sort_by(|a, b| fit.correlation[*b].abs().total_cmp(&fit.correlation[*a].abs()).then(a.cmp(b)));
@@ -87,47 +87,53 @@ fn pairs(fit: &Fit) -> Vec<(usize, usize)> {
     all
 }
 
-fn pair(problem: &Problem<'_>, fit: &Fit, i: usize, j: usize) -> Option<Panel> {
+fn pair(problem: &IdentificationProblem<'_>, fit: &ParameterFit, i: usize, j: usize) -> Option<FigurePanel> {
     let (x, y) = fit.ellipse(problem, i, j)?;
-    let centre = Series {
+    let centre = PlotSeries {
         name: "estimate".to_owned(),
         x: vec![fit.values[i]],
         y: vec![fit.values[j]],
         crosses: true,
         colour: 1,
-        ..Series::default()
+        ..PlotSeries::default()
     };
-    Some(Panel {
+    Some(FigurePanel {
         x_label: label(&problem.free[i].name, &problem.free[i].unit),
         y_label: label(&problem.free[j].name, &problem.free[j].unit),
-        series: vec![Series { name: "95 % together".to_owned(), x, y, ..Series::default() }, centre],
-        ..Panel::default()
+        series: vec![PlotSeries { name: "95 % together".to_owned(), x, y, ..PlotSeries::default() }, centre],
+        ..FigurePanel::default()
     })
 }
 
-fn profile(problem: &Problem<'_>, fit: &Fit, profile: &Profile) -> Panel {
+fn profile(problem: &IdentificationProblem<'_>, fit: &ParameterFit, profile: &ProfileLikelihood) -> FigurePanel {
     let free = &problem.free[profile.parameter];
     let (x, y): (Vec<f64>, Vec<f64>) = profile.points.iter().copied().unzip();
     let ends = [x[0], x[x.len() - 1]];
     let deviation = fit.deviations[profile.parameter];
     let level = student(fit.degrees[profile.parameter]).powi(2);
     let quadratic = x.iter().map(|v| ((v - fit.values[profile.parameter]) / deviation).powi(2)).collect();
-    Panel {
+    FigurePanel {
         x_label: label(&free.name, &free.unit),
         y_label: "rise".to_owned(),
         series: vec![
-            Series { name: "profile".to_owned(), x: x.clone(), y: y.clone(), ..Series::default() },
-            Series { name: "searched anew".to_owned(), x: x.clone(), y, crosses: true, ..Series::default() },
-            Series {
+            PlotSeries { name: "profile".to_owned(), x: x.clone(), y: y.clone(), ..PlotSeries::default() },
+            PlotSeries { name: "searched anew".to_owned(), x: x.clone(), y, crosses: true, ..PlotSeries::default() },
+            PlotSeries {
                 name: "by the deviation".to_owned(),
                 x,
                 y: quadratic,
                 colour: 6,
                 dashed: true,
-                ..Series::default()
+                ..PlotSeries::default()
             },
-            Series { name: "95 %".to_owned(), x: ends.to_vec(), y: vec![level; 2], colour: 1, ..Series::default() },
+            PlotSeries {
+                name: "95 %".to_owned(),
+                x: ends.to_vec(),
+                y: vec![level; 2],
+                colour: 1,
+                ..PlotSeries::default()
+            },
         ],
-        ..Panel::default()
+        ..FigurePanel::default()
     }
 }

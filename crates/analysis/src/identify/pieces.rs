@@ -7,8 +7,8 @@
 //! J. Nocedal, S. J. Wright, Numerical Optimization, 2006, section 17.1.
 
 use super::output_error::OutputError;
-use super::runs::Track;
-use super::{Bounds, Effort, minimise};
+use super::runs::RunInputs;
+use super::{StoppingCriteria, VariableBounds, minimise};
 use bramah_expr::VarId;
 use bramah_solve::State;
 use std::ops::Range;
@@ -35,7 +35,7 @@ impl FreeState {
 
 /// A run along a part of a recording.
 #[derive(Clone, Debug)]
-pub struct Leg {
+pub struct ShootingInterval {
     /// Its first sample.
     pub first: usize,
     /// The states at its start that are searched for.
@@ -46,25 +46,25 @@ pub struct Leg {
 
 /// One recording with its unknown states.
 #[derive(Clone, Debug)]
-pub struct Case {
+pub struct RecordingCase {
     /// The whole of it.
-    pub track: Track,
+    pub track: RunInputs,
     /// Measured values, one column a signal.
     pub measured: Vec<Vec<f64>>,
     /// The runs that follow each other along it.
-    pub legs: Vec<Leg>,
+    pub legs: Vec<ShootingInterval>,
     /// Where the first run starts when not at the model's own start.
     pub from: Option<State>,
 }
 
-impl Case {
+impl RecordingCase {
     /// The samples of a leg.
     pub fn samples(&self, leg: usize) -> Range<usize> {
         self.legs[leg].first..self.legs.get(leg + 1).map_or(self.track.times.len(), |next| next.first)
     }
 
     /// What a leg runs along: to the start of the next one.
-    pub fn along(&self, leg: usize) -> Track {
+    pub fn along(&self, leg: usize) -> RunInputs {
         let end = self.samples(leg).end.min(self.track.times.len() - 1);
         if self.legs.len() == 1 { self.track.clone() } else { self.track.between(self.legs[leg].first, end) }
     }
@@ -86,18 +86,23 @@ impl Case {
     }
 
     /// One leg alone, from a state.
-    fn alone(&self, leg: usize, from: Option<State>) -> Case {
+    fn alone(&self, leg: usize, from: Option<State>) -> RecordingCase {
         let samples = self.samples(leg);
         let track = self.track.between(samples.start, samples.end - 1);
         let measured = self.measured.iter().map(|m| m[samples.clone()].to_vec()).collect();
         let states = self.legs[leg].states.clone();
-        Case { track, measured, legs: vec![Leg { first: 0, places: 0..states.len(), states }], from }
+        RecordingCase {
+            track,
+            measured,
+            legs: vec![ShootingInterval { first: 0, places: 0..states.len(), states }],
+            from,
+        }
     }
 }
 
 /// How pieces of recordings join after a fit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Joints {
+pub struct ContinuityDefects {
     /// How many places there are where pieces join.
     pub count: usize,
     /// The largest jump left there, as a part of the range of its state.
@@ -167,8 +172,8 @@ impl OutputError<'_> {
         let of = &self.cases[case];
         let mut one = self.single(of.alone(leg, from), parameters);
         let n = of.legs[leg].states.len();
-        let free = Bounds { low: vec![f64::NEG_INFINITY; n], high: vec![f64::INFINITY; n] };
-        let effort = Effort { iterations: 20, ..Effort::default() };
+        let free = VariableBounds { low: vec![f64::NEG_INFINITY; n], high: vec![f64::INFINITY; n] };
+        let effort = StoppingCriteria { iterations: 20, ..StoppingCriteria::default() };
         let z = minimise(&mut one, &vec![0.0; n], &free, effort).map_or_else(|| vec![0.0; n], |found| found.z);
         one.cases[0].track = of.along(leg);
         let handed: Vec<VarId> = of.handed(0).iter().map(|s| s.variable).collect();
@@ -179,17 +184,17 @@ impl OutputError<'_> {
     }
 
     /// How the pieces join with this residual; `None` where no recording is cut.
-    pub(super) fn joints(&self, residual: &[f64]) -> Option<Joints> {
+    pub(super) fn joints(&self, residual: &[f64]) -> Option<ContinuityDefects> {
         let count: usize = self.cases.iter().map(|c| c.legs.len() - 1).sum();
         let flat = &self.problem.model.flat;
         let name = |s: &FreeState| flat.variables[s.variable.index()].name.clone();
-        let mut worst: Option<Joints> = None;
+        let mut worst: Option<ContinuityDefects> = None;
         let first = residual.len() - self.all_states();
         for leg in self.cases.iter().flat_map(|c| &c.legs[1..]) {
             for (state, place) in leg.states.iter().zip(leg.places.clone()) {
                 let jump = (self.weights.joint * residual[first + place - self.parameters]).abs();
                 if worst.as_ref().is_none_or(|w| jump > w.jump) {
-                    worst = Some(Joints { count, jump, state: name(state) });
+                    worst = Some(ContinuityDefects { count, jump, state: name(state) });
                 }
             }
         }

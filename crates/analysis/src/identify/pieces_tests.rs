@@ -41,7 +41,7 @@ fn joined_pieces_of_a_chaotic_recording() {
         let parameters = "s = { min = 0.1 }\nr = { min = 0.1 }\nb = { min = 0.1 }\n";
         let text = butterfly(0.5);
         let world = world(LORENZ, &study(pieces, "", parameters), text.clone(), text);
-        with_fit(&world, Method::Output, |_, _, fit| fit.clone())
+        with_fit(&world, IdentifyMethod::Output, |_, _, fit| fit.clone())
     };
     let truth = [10.0, 28.0, 8.0 / 3.0];
     let whole = fitted(1);
@@ -71,7 +71,7 @@ fn joined_pieces_of_an_unstable_recording() {
     }
     let study = study(10, "[inputs]\nu = { hold = true }\n", "a = { min = 0.1 }\nk = { min = 0.1 }\n");
     let world = world(model, &study, text.clone(), text);
-    with_fit(&world, Method::Output, |problem, _, fit| {
+    with_fit(&world, IdentifyMethod::Output, |problem, _, fit| {
         assert!(fit.converged && fit.differences.is_none(), "{:?}", fit.differences);
         for (j, truth) in [3.0, 2.0].into_iter().enumerate() {
             // the pieces alone leave 0.012 and 0.007
@@ -89,7 +89,7 @@ fn derivatives_across_joints_agree_with_differences() {
     let parameters = "s = { min = 0.1 }\nr = { min = 0.1 }\nb = { min = 0.1 }\n";
     let text: String = butterfly(0.5).lines().take(80).map(|line| format!("{line}\n")).collect();
     let world = world(LORENZ, &study(4, "", parameters), text.clone(), text);
-    with_fit(&world, Method::Output, |problem, found, _| {
+    with_fit(&world, IdentifyMethod::Output, |problem, found, _| {
         let mut exact = found.output_error().expect("starts");
         let mut plain = OutputError::new(problem, found.train, None).expect("starts");
         (exact.runner.tolerance, plain.runner.tolerance) = (1e-11, 1e-11);

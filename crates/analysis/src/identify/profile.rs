@@ -4,13 +4,13 @@
 //! curvature that the corrected deviations say. Source: R. E. Chandler, S. Bate, Biometrika 94 (2007) 167.
 
 use super::chance::student;
-use super::least_squares::{Bounds, Effort, minimise};
-use super::{Fit, Identification, Residuals, Shared};
+use super::least_squares::{StoppingCriteria, VariableBounds, minimise};
+use super::{BorrowedResiduals, Identification, ParameterFit, WeightedResiduals};
 use bramah_syntax::diag::Diagnostic;
 
 /// How the fit gets worse as one parameter moves.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Profile {
+pub struct ProfileLikelihood {
     /// Index of the parameter.
     pub parameter: usize,
     /// Its values, growing, and the rise of twice the negative log-likelihood there, 0 at the estimate.
@@ -34,17 +34,17 @@ impl Identification<'_> {
     ///
     /// # Errors
     /// As [`Identification::fit`].
-    pub fn profile(&self, fit: &Fit, parameter: usize) -> Result<Profile, Diagnostic> {
+    pub fn profile(&self, fit: &ParameterFit, parameter: usize) -> Result<ProfileLikelihood, Diagnostic> {
         match self.inverse_model()? {
             Some(mut model) => Ok(self.along(&mut model, fit, parameter)),
             None => Ok(self.along(&mut self.output_error()?, fit, parameter)),
         }
     }
 
-    fn along(&self, model: &mut dyn Residuals, fit: &Fit, parameter: usize) -> Profile {
+    fn along(&self, model: &mut dyn WeightedResiduals, fit: &ParameterFit, parameter: usize) -> ProfileLikelihood {
         model.weights().clone_from(&fit.weights);
         let bounds = self.problem.bounds(fit.z.len());
-        let mut walk = Walk { model, bounds, fit, parameter };
+        let mut walk = ProfileWalk { model, bounds, fit, parameter };
         let free = &self.problem.free[parameter];
         let mut points = vec![(fit.values[parameter], 0.0)];
         let mut side = |sign: f64| {
@@ -55,18 +55,18 @@ impl Identification<'_> {
         let (low, high) = (side(-1.0), side(1.0));
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let interval = (low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY));
-        Profile { parameter, points, interval }
+        ProfileLikelihood { parameter, points, interval }
     }
 }
 
-struct Walk<'a, 'm> {
-    model: &'m mut dyn Residuals,
-    bounds: Bounds,
-    fit: &'a Fit,
+struct ProfileWalk<'a, 'm> {
+    model: &'m mut dyn WeightedResiduals,
+    bounds: VariableBounds,
+    fit: &'a ParameterFit,
     parameter: usize,
 }
 
-impl Walk<'_, '_> {
+impl ProfileWalk<'_, '_> {
     /// Points seen on one side, in even steps until the level is passed, and where the rise reaches it.
     fn side(&mut self, sign: f64) -> (Vec<(f64, f64)>, Option<f64>) {
         let centre = self.fit.z[self.parameter];
@@ -121,7 +121,12 @@ impl Walk<'_, '_> {
         start[self.parameter] = z;
         let mut bounds = self.bounds.clone();
         (bounds.low[self.parameter], bounds.high[self.parameter]) = (z, z);
-        let found = minimise(&mut Shared(self.model), &start, &bounds, Effort { iterations: 20, ..Effort::default() })?;
+        let found = minimise(
+            &mut BorrowedResiduals(self.model),
+            &start,
+            &bounds,
+            StoppingCriteria { iterations: 20, ..StoppingCriteria::default() },
+        )?;
         let rise = found.residual.norm_squared() - self.fit.cost;
         Some((rise.max(0.0) * self.fit.plain[self.parameter] / self.fit.spread[self.parameter], found.z))
     }

@@ -1,6 +1,9 @@
 //! The result of an identification in numbers and in words.
 
-use super::{Fit, Identification, Method, Problem, Profile, ResidualTest, SignalFit, Starts};
+use super::{
+    Identification, IdentificationProblem, IdentifyMethod, MultistartSummary, ParameterFit, ProfileLikelihood,
+    ResidualTest, SignalFit,
+};
 use bramah_results::number::rounded;
 use serde::Serialize;
 use serde_json::{Map, json};
@@ -8,7 +11,7 @@ use std::fmt::Write;
 
 /// `result.json`.
 #[derive(Clone, Debug, Serialize)]
-pub struct Report {
+pub struct IdentificationReport {
     /// `output error` or `inverse model`.
     pub method: &'static str,
     /// The parameters found: value, one standard deviation, its degrees of freedom and 95 % interval (null where the data say nothing) and unit.
@@ -16,9 +19,9 @@ pub struct Report {
     /// Groups that the data cannot tell apart; a group of one has no influence.
     pub inseparable: Vec<Vec<String>>,
     /// Root mean square errors in the signals' units.
-    pub fit: Errors,
+    pub fit: FitErrors,
     /// The same over the signals' own variation.
-    pub fit_relative: Errors,
+    pub fit_relative: FitErrors,
     /// Over how many samples the errors on the train recordings resemble each other.
     pub residual_correlation: Map<String, serde_json::Value>,
     /// What the errors on the train recordings look like.
@@ -47,22 +50,22 @@ pub struct Report {
 
 /// By role and signal.
 #[derive(Clone, Debug, Serialize)]
-pub struct Errors {
+pub struct FitErrors {
     /// On the recordings used.
     pub train: Map<String, serde_json::Value>,
     /// On those kept back.
     pub held: Map<String, serde_json::Value>,
 }
 
-impl Report {
+impl IdentificationReport {
     /// Puts the result together.
     pub fn new(
-        problem: &Problem<'_>,
+        problem: &IdentificationProblem<'_>,
         found: &Identification<'_>,
-        fit: &Fit,
+        fit: &ParameterFit,
         held: &[SignalFit],
-        profiles: &[Profile],
-    ) -> Report {
+        profiles: &[ProfileLikelihood],
+    ) -> IdentificationReport {
         let values = problem.free.iter().enumerate().map(|(j, f)| {
             let std = finite(fit.deviations[j]);
             let (low, high) = fit.interval(problem, j);
@@ -76,10 +79,10 @@ impl Report {
         let by = |fits: &[SignalFit], of: fn(&SignalFit) -> f64| {
             fits.iter().map(|f| (f.name.clone(), json!(of(f)))).collect()
         };
-        let errors = |of: fn(&SignalFit) -> f64| Errors { train: by(&fit.train, of), held: by(held, of) };
+        let errors = |of: fn(&SignalFit) -> f64| FitErrors { train: by(&fit.train, of), held: by(held, of) };
         let names = |group: &Vec<usize>| group.iter().map(|&j| problem.free[j].name.clone()).collect();
         let ends = problem.free.iter().zip(&fit.at_bound).filter(|(_, at)| **at);
-        Report {
+        IdentificationReport {
             method: word(fit.method),
             parameters: values.collect(),
             inseparable: found.separation.blind.iter().map(|b| names(&b.group)).collect(),
@@ -99,18 +102,18 @@ impl Report {
     }
 }
 
-fn derivatives(fit: &Fit) -> String {
+fn derivatives(fit: &ParameterFit) -> String {
     fit.differences.as_ref().map_or_else(|| "exact".to_owned(), |why| format!("differences: {why}"))
 }
 
-fn starts(fit: &Fit) -> Map<String, serde_json::Value> {
-    let Starts { tried, here, worse, failed } = fit.starts;
+fn starts(fit: &ParameterFit) -> Map<String, serde_json::Value> {
+    let MultistartSummary { tried, here, worse, failed } = fit.starts;
     let all = [("tried", tried), ("here", here), ("worse", worse), ("failed", failed)];
     all.into_iter().filter(|_| tried > 1).map(|(name, n)| (name.to_owned(), json!(n))).collect()
 }
 
-fn joints(fit: &Fit) -> Map<String, serde_json::Value> {
-    let entry = |j: &super::Joints| {
+fn joints(fit: &ParameterFit) -> Map<String, serde_json::Value> {
+    let entry = |j: &super::ContinuityDefects| {
         [("count", json!(j.count)), ("jump", json!(j.jump)), ("state", json!(j.state))].map(|(n, v)| (n.to_owned(), v))
     };
     fit.joints.iter().flat_map(entry).collect()
@@ -122,7 +125,7 @@ fn finite(value: f64) -> Option<f64> {
 }
 
 fn residual(test: &ResidualTest) -> (String, serde_json::Value) {
-    let follow = |d: &super::Dependence| {
+    let follow = |d: &super::InputCrossCorrelation| {
         (d.input.clone(), json!({"lag": d.lag, "correlation": d.correlation, "chance": d.chance}))
     };
     let inputs: Map<String, serde_json::Value> = test.inputs.iter().map(follow).collect();
@@ -134,17 +137,17 @@ fn residual(test: &ResidualTest) -> (String, serde_json::Value) {
     (test.name.clone(), all)
 }
 
-fn profile(p: &Profile) -> serde_json::Value {
+fn profile(p: &ProfileLikelihood) -> serde_json::Value {
     let (value, rise): (Vec<f64>, Vec<f64>) = p.points.iter().copied().unzip();
     json!({"interval": [finite(p.interval.0), finite(p.interval.1)], "value": value, "rise": rise})
 }
 
-fn word(method: Method) -> &'static str {
-    if method == Method::Inverse { "inverse model" } else { "output error" }
+fn word(method: IdentifyMethod) -> &'static str {
+    if method == IdentifyMethod::Inverse { "inverse model" } else { "output error" }
 }
 
 /// What can be found at all, in words.
-pub fn separation_words(problem: &Problem<'_>, found: &Identification<'_>) -> String {
+pub fn separation_words(problem: &IdentificationProblem<'_>, found: &Identification<'_>) -> String {
     let s = &found.separation;
     let mut text = format!(
         "{} parameters, {} independent combinations in the data (condition {})\n",
@@ -171,12 +174,12 @@ pub fn separation_words(problem: &Problem<'_>, found: &Identification<'_>) -> St
 }
 
 /// The parameters found and how well the signals are met, in words.
-pub fn fit_words(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> String {
+pub fn fit_words(problem: &IdentificationProblem<'_>, fit: &ParameterFit, held: &[SignalFit]) -> String {
     let mut text = String::new();
     if !fit.converged {
         text.push_str("the search did not reach a least value: the numbers below are where it stopped\n");
     }
-    let Starts { tried, here, worse, failed } = fit.starts;
+    let MultistartSummary { tried, here, worse, failed } = fit.starts;
     if tried > 1 {
         let _ = write!(text, "of {tried} starts {here} led to this least value, {worse} to larger ones");
         text.push_str(&if failed > 0 { format!(", {failed} could not be run\n") } else { "\n".to_owned() });
@@ -214,7 +217,7 @@ pub fn fit_words(problem: &Problem<'_>, fit: &Fit, held: &[SignalFit]) -> String
             let _ = writeln!(text, "  {role}: {} rmse {rmse} {} ({share} %){coloured}", f.name, f.unit);
         }
     }
-    if fit.method == Method::Output {
+    if fit.method == IdentifyMethod::Output {
         let _ = writeln!(text, "  derivatives: {}", derivatives(fit));
     }
     for test in &fit.residuals {
@@ -241,9 +244,9 @@ fn residual_words(test: &ResidualTest) -> String {
 }
 
 /// Profiles, in words.
-pub fn profile_words(problem: &Problem<'_>, profiles: &[Profile]) -> String {
+pub fn profile_words(problem: &IdentificationProblem<'_>, profiles: &[ProfileLikelihood]) -> String {
     let end = |v: f64| if v.is_finite() { rounded(v, 6) } else { "open".to_owned() };
-    let line = |p: &Profile| {
+    let line = |p: &ProfileLikelihood| {
         let free = &problem.free[p.parameter];
         format!("  {}: 95 % from {} to {} {}\n", free.name, end(p.interval.0), end(p.interval.1), free.unit)
     };

@@ -3,8 +3,8 @@
 //! Source: G. M. Ljung, G. E. P. Box, Biometrika 65 (1978) 297; L. Ljung, System Identification, 1999, section 16.6.
 
 use super::chance::{NORMAL, beyond, two_sided};
-use super::weights::Weights;
-use crate::study::{Bound, Recording};
+use super::weights::ResidualWeights;
+use crate::study::{BoundStudy, Recording};
 
 /// What the errors of one signal look like.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,12 +20,12 @@ pub struct ResidualTest {
     /// The chance that white errors give a larger sum: small for errors that are not white.
     pub chance: f64,
     /// How the errors follow the inputs; empty for the inverse model.
-    pub inputs: Vec<Dependence>,
+    pub inputs: Vec<InputCrossCorrelation>,
 }
 
 /// The strongest correlation of errors with an earlier or present input.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Dependence {
+pub struct InputCrossCorrelation {
     /// The input's name.
     pub input: String,
     /// By how many samples the input comes before the error.
@@ -47,7 +47,7 @@ impl ResidualTest {
     pub fn new(
         name: &str,
         k: usize,
-        weights: &Weights,
+        weights: &ResidualWeights,
         residual: &[f64],
         inputs: &[(String, Vec<Vec<f64>>)],
     ) -> Option<ResidualTest> {
@@ -86,13 +86,13 @@ impl ResidualTest {
     }
 
     /// The inputs that the errors follow.
-    pub fn followed(&self) -> impl Iterator<Item = &Dependence> {
+    pub fn followed(&self) -> impl Iterator<Item = &InputCrossCorrelation> {
         self.inputs.iter().filter(|d| d.chance < UNLIKELY)
     }
 }
 
 /// Per input its values at the samples that a signal's errors belong to, by recording.
-pub fn inputs_beside(bound: &Bound, signal: usize, recordings: &[Recording]) -> Vec<(String, Vec<Vec<f64>>)> {
+pub fn inputs_beside(bound: &BoundStudy, signal: usize, recordings: &[Recording]) -> Vec<(String, Vec<Vec<f64>>)> {
     let beside = |i: usize, r: &Recording| {
         let known = r.inputs[i].iter().zip(&r.signals[signal]).filter(|(_, y)| !y.is_nan());
         known.map(|(u, _)| *u).collect::<Vec<f64>>()
@@ -113,7 +113,7 @@ fn centred(values: &[impl AsRef<[f64]>]) -> Vec<Vec<f64>> {
     values.iter().map(|v| v.as_ref().iter().map(|x| x - mean).collect()).collect()
 }
 
-fn dependence(name: &str, errors: &[&[f64]], input: &[Vec<f64>], lags: usize) -> Option<Dependence> {
+fn dependence(name: &str, errors: &[&[f64]], input: &[Vec<f64>], lags: usize) -> Option<InputCrossCorrelation> {
     let (e, u) = (centred(errors), centred(input));
     let (e0, u0) = (product(&e, &e, 0), product(&u, &u, 0));
     let size: f64 = input.iter().flatten().map(|v| v * v).sum();
@@ -129,13 +129,13 @@ fn dependence(name: &str, errors: &[&[f64]], input: &[Vec<f64>], lags: usize) ->
     let (lag, correlation) =
         (0..=lags).map(|lag| (lag, at(lag))).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).expect("lag 0 is there");
     let chance = ((lags + 1) as f64 * two_sided(correlation / variance.sqrt())).min(1.0);
-    Some(Dependence { input: name.to_owned(), lag, correlation, chance })
+    Some(InputCrossCorrelation { input: name.to_owned(), lag, correlation, chance })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Series;
+    use crate::estimate::ResidualSeries;
 
     /// Numbers of mean 0 from a congruential generator.
     fn noise(seed: u64, count: usize) -> Vec<f64> {
@@ -148,8 +148,8 @@ mod tests {
     }
 
     fn judged(errors: &[f64], input: &[f64]) -> ResidualTest {
-        let series = vec![Series { recording: 0, signal: 0, rows: 0..errors.len() }];
-        let weights = Weights::new(series, vec![1.0]);
+        let series = vec![ResidualSeries { recording: 0, signal: 0, rows: 0..errors.len() }];
+        let weights = ResidualWeights::new(series, vec![1.0]);
         ResidualTest::new("y", 0, &weights, errors, &[("u".into(), vec![input.to_vec()])]).expect("enough")
     }
 

@@ -1,29 +1,29 @@
 //! Runs of a model along recordings, with the values at the times of the samples.
 
-use crate::study::{Bound, Recording};
+use crate::study::{BoundStudy, Recording};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
 use bramah_model::structure::StateChoice;
-use bramah_solve::{self as solve, Control, End, Input, Settings, Sink, State};
+use bramah_solve::{self as solve, Control, End, RecordedInput, RowSink, Settings, State};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A recording as a run needs it.
 #[derive(Clone, Debug)]
-pub struct Track {
+pub struct RunInputs {
     /// Times of the samples in seconds.
     pub times: Arc<[f64]>,
     /// The driven inputs.
-    pub inputs: Vec<Input>,
+    pub inputs: Vec<RecordedInput>,
     /// Rows of the run lie this far apart: the usual distance of samples.
     pub interval: f64,
 }
 
-impl Track {
+impl RunInputs {
     /// For the inputs of a study.
-    pub fn new(bound: &Bound, recording: &Recording) -> Track {
+    pub fn new(bound: &BoundStudy, recording: &Recording) -> RunInputs {
         let times: Arc<[f64]> = recording.times.as_slice().into();
-        let inputs = bound.inputs.iter().zip(&recording.inputs).map(|(input, values)| Input {
+        let inputs = bound.inputs.iter().zip(&recording.inputs).map(|(input, values)| RecordedInput {
             variable: input.variable,
             times: times.clone(),
             values: values.as_slice().into(),
@@ -31,26 +31,26 @@ impl Track {
         });
         let mut steps: Vec<f64> = times.windows(2).map(|w| w[1] - w[0]).collect();
         steps.sort_by(f64::total_cmp);
-        Track { inputs: inputs.collect(), interval: steps[steps.len() / 2], times }
+        RunInputs { inputs: inputs.collect(), interval: steps[steps.len() / 2], times }
     }
 
     /// The same up to a time, with at least one sample.
     #[must_use]
-    pub fn until(&self, time: f64) -> Track {
+    pub fn until(&self, time: f64) -> RunInputs {
         let count = self.times.partition_point(|&t| t <= time).max(1);
-        Track { times: self.times[..count].into(), ..self.clone() }
+        RunInputs { times: self.times[..count].into(), ..self.clone() }
     }
 
     /// The samples from one up to another, that one included.
     #[must_use]
-    pub fn between(&self, first: usize, last: usize) -> Track {
-        Track { times: self.times[first..=last].into(), ..self.clone() }
+    pub fn between(&self, first: usize, last: usize) -> RunInputs {
+        RunInputs { times: self.times[first..=last].into(), ..self.clone() }
     }
 }
 
 /// Why a run gave no values.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Broken {
+pub struct RunFailure {
     /// The time reached, in seconds.
     pub time: f64,
     /// What the run said.
@@ -59,21 +59,21 @@ pub struct Broken {
 
 /// Runs a model.
 #[derive(Clone, Copy, Debug)]
-pub struct Runner<'a> {
+pub struct ModelRunner<'a> {
     /// The model.
     pub model: &'a CompiledModel,
     /// Relative tolerance.
     pub tolerance: f64,
 }
 
-impl Runner<'_> {
+impl ModelRunner<'_> {
     /// The state at the first sample, as the model's initial equations give it.
     ///
     /// # Errors
     /// When they have no solution.
-    pub fn start(&self, track: &Track, parameters: &[(VarId, f64)]) -> Result<State, Broken> {
+    pub fn start(&self, track: &RunInputs, parameters: &[(VarId, f64)]) -> Result<State, RunFailure> {
         let first = track.times[0];
-        let mut rows = Samples::new(&[], &[]);
+        let mut rows = SampleCollector::new(&[], &[]);
         let settings = self.settings(first, first, 0.0, parameters, &[]);
         self.simulate(&settings, &track.inputs, None, &mut rows)
     }
@@ -84,26 +84,26 @@ impl Runner<'_> {
     /// When the run does not reach the last sample.
     pub fn run(
         &self,
-        track: &Track,
+        track: &RunInputs,
         parameters: &[(VarId, f64)],
         from: Option<&State>,
         wanted: &[VarId],
-    ) -> Result<Vec<Vec<f64>>, Broken> {
+    ) -> Result<Vec<Vec<f64>>, RunFailure> {
         self.run_on(track, parameters, from, wanted).map(|(columns, _)| columns)
     }
 
     /// The same with the state at the last sample.
     ///
     /// # Errors
-    /// As [`Runner::run`].
+    /// As [`ModelRunner::run`].
     pub fn run_on(
         &self,
-        track: &Track,
+        track: &RunInputs,
         parameters: &[(VarId, f64)],
         from: Option<&State>,
         wanted: &[VarId],
-    ) -> Result<(Vec<Vec<f64>>, State), Broken> {
-        let mut rows = Samples::new(&track.times, wanted);
+    ) -> Result<(Vec<Vec<f64>>, State), RunFailure> {
+        let mut rows = SampleCollector::new(&track.times, wanted);
         let (first, last) = (track.times[0], track.times[track.times.len() - 1]);
         let settings = self.settings(first, last, track.interval, parameters, wanted);
         let state = self.simulate(&settings, &track.inputs, from, &mut rows)?;
@@ -132,10 +132,10 @@ impl Runner<'_> {
     fn simulate(
         &self,
         settings: &Settings,
-        inputs: &[Input],
+        inputs: &[RecordedInput],
         from: Option<&State>,
-        rows: &mut Samples<'_>,
-    ) -> Result<State, Broken> {
+        rows: &mut SampleCollector<'_>,
+    ) -> Result<State, RunFailure> {
         let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
         let mut control = Control { reselect: Some(&mut reselect), ..Control::default() };
         let run = solve::simulate(&self.model.system, settings, inputs, from, rows, &mut control);
@@ -143,22 +143,22 @@ impl Runner<'_> {
             return Ok(run.state);
         }
         let said = run.diagnostics.iter().find(|d| d.is_error()).map(|d| d.message.clone());
-        Err(Broken { time: run.time, message: said.unwrap_or_else(|| format!("it ended as {}", run.end.word())) })
+        Err(RunFailure { time: run.time, message: said.unwrap_or_else(|| format!("it ended as {}", run.end.word())) })
     }
 }
 
 /// Takes the rows of a run and keeps the values at given times: at an event those after it, between rows straight lines.
-pub(super) struct Samples<'a> {
+pub(super) struct SampleCollector<'a> {
     times: &'a [f64],
     next: usize,
     before: Option<(f64, Vec<f64>)>,
     columns: Vec<Vec<f64>>,
 }
 
-impl<'a> Samples<'a> {
+impl<'a> SampleCollector<'a> {
     /// For the columns of `wanted`.
     pub(super) fn new(times: &'a [f64], wanted: &[VarId]) -> Self {
-        Samples { times, next: 0, before: None, columns: vec![Vec::with_capacity(times.len()); wanted.len()] }
+        SampleCollector { times, next: 0, before: None, columns: vec![Vec::with_capacity(times.len()); wanted.len()] }
     }
 
     fn slack(&self, k: usize) -> f64 {
@@ -189,7 +189,7 @@ impl<'a> Samples<'a> {
     }
 }
 
-impl Sink for Samples<'_> {
+impl RowSink for SampleCollector<'_> {
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
         self.pass(time, values);
         self.before = Some((time, values.to_vec()));
@@ -204,7 +204,7 @@ mod tests {
     #[test]
     fn values_at_samples() {
         let times = [0.0, 1.0, 2.5, 3.0];
-        let mut samples = Samples::new(&times, &[VarId(0)]);
+        let mut samples = SampleCollector::new(&times, &[VarId(0)]);
         for (t, v) in [(0.0, 1.0), (1.0, 2.0), (1.0, 5.0), (2.0, 6.0), (3.0, 8.0)] {
             let _ = samples.row(t, &[v]);
         }

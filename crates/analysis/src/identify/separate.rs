@@ -5,7 +5,7 @@ use petgraph::unionfind::UnionFind;
 
 /// A direction in which the unknowns can move unseen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Blind {
+pub struct UnidentifiableDirection {
     /// Indices of the parameters that take part, strongest first; in their own order where several directions share them.
     pub group: Vec<usize>,
     /// The direction in z, of length 1.
@@ -16,13 +16,13 @@ pub struct Blind {
 
 /// What the data say about the parameters before the fit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Separation {
+pub struct IdentifiabilityAnalysis {
     /// How many independent combinations the data determine.
     pub rank: usize,
     /// Largest over smallest singular value of the scaled sensitivities.
     pub condition: f64,
     /// What cannot be told apart.
-    pub blind: Vec<Blind>,
+    pub blind: Vec<UnidentifiableDirection>,
     /// Per parameter one standard deviation in z that the data alone would give, the others being searched for too.
     pub deviation: Vec<f64>,
 }
@@ -33,14 +33,14 @@ const ALIKE: f64 = 1e-7;
 const SHARE: f64 = 0.1;
 
 /// Judges `information`, the sum of squares of the sensitivities by z, initial states already taken out.
-pub fn separate(information: &DMatrix<f64>) -> Separation {
+pub fn separate(information: &DMatrix<f64>) -> IdentifiabilityAnalysis {
     let p = information.nrows();
     let size: Vec<f64> = (0..p).map(|j| information[(j, j)].max(0.0).sqrt()).collect();
     // less than a deviation of 1 in z: less than its whole value
     let seen: Vec<usize> = (0..p).filter(|&j| size[j] > 1.0).collect();
-    let mut blind: Vec<Blind> = (0..p)
+    let mut blind: Vec<UnidentifiableDirection> = (0..p)
         .filter(|j| !seen.contains(j))
-        .map(|j| Blind { group: vec![j], direction: unit(p, j), deviation: 1.0 / size[j] })
+        .map(|j| UnidentifiableDirection { group: vec![j], direction: unit(p, j), deviation: 1.0 / size[j] })
         .collect();
     let alike = DMatrix::from_fn(seen.len(), seen.len(), |a, b| {
         information[(seen[a], seen[b])] / (size[seen[a]] * size[seen[b]])
@@ -48,7 +48,7 @@ pub fn separate(information: &DMatrix<f64>) -> Separation {
     // an empty matrix has no decomposition
     if seen.is_empty() {
         let deviation = size.iter().map(|s| 1.0 / s).collect();
-        return Separation { rank: 0, condition: f64::INFINITY, blind, deviation };
+        return IdentifiabilityAnalysis { rank: 0, condition: f64::INFINITY, blind, deviation };
     }
     let eigen = alike.symmetric_eigen();
     let largest = eigen.eigenvalues.iter().copied().fold(0.0, f64::max);
@@ -65,12 +65,12 @@ pub fn separate(information: &DMatrix<f64>) -> Separation {
         }
         if deviation > 1.0 {
             let direction: Vec<f64> = direction.iter().map(|d| d / length).collect();
-            blind.push(Blind { group: group(&direction), direction, deviation });
+            blind.push(UnidentifiableDirection { group: group(&direction), direction, deviation });
         }
     }
     merge_hidden(&mut blind, p);
     (0..p).filter(|j| !seen.contains(j)).for_each(|j| variance[j] = size[j].powi(-2));
-    Separation {
+    IdentifiabilityAnalysis {
         rank: p - blind.len(),
         condition: if seen.len() < p || smallest <= 0.0 { f64::INFINITY } else { (largest / smallest).sqrt() },
         blind,
@@ -91,8 +91,8 @@ fn group(direction: &[f64]) -> Vec<usize> {
 
 /// Several directions that the data do not see span a space of which any basis would do: those that share parameters name all
 /// of them, so that what is said does not hang on rounding.
-fn merge_hidden(blind: &mut [Blind], parameters: usize) {
-    let hidden: Vec<&mut Blind> =
+fn merge_hidden(blind: &mut [UnidentifiableDirection], parameters: usize) {
+    let hidden: Vec<&mut UnidentifiableDirection> =
         blind.iter_mut().filter(|b| b.deviation.is_infinite() && !b.group.is_empty()).collect();
     let mut sets = UnionFind::<usize>::new(parameters);
     for b in &hidden {

@@ -1,11 +1,11 @@
 //! From a study file to its parameters.
 
-use super::{Identification, Method, Problem, Report, doubts, fit_words};
-use crate::study::{Recording, Role, Study};
+use super::{Identification, IdentificationProblem, IdentificationReport, IdentifyMethod, doubts, fit_words};
+use crate::study::{Recording, RecordingRole, Study};
 use bramah_circuit::compiled::compile;
-use bramah_solve::lower::Options;
+use bramah_solve::lower::LoweringOptions;
 use bramah_syntax::diag::render::full;
-use bramah_syntax::diag::{Checked, Diagnostic, Error, Sources};
+use bramah_syntax::diag::{Diagnostic, Error, Sources, StageResult};
 use bramah_syntax::world::World;
 use std::path::Path;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct Identified {
     /// The numbers; serializes as the JSON of `bramah identify`.
-    pub report: Report,
+    pub report: IdentificationReport,
     /// The same in words for people.
     pub words: String,
     /// Warnings about study, recordings and fit.
@@ -46,23 +46,23 @@ impl Identified {
 /// # Errors
 /// What is wrong with the study, its model or its recordings; that runs fail.
 pub fn identify(world: &dyn World, study: &Path) -> Result<Identified, Error> {
-    identify_as(world, study, None, &Asked::default())
+    identify_as(world, study, None, &IdentifyOptions::default())
 }
 
 /// How parameters are searched for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Asked {
+pub struct IdentifyOptions {
     /// Against which errors.
-    pub method: Method,
+    pub method: IdentifyMethod,
     /// From so many places, the values of the model first.
     pub starts: usize,
     /// Draws the places.
     pub seed: u64,
 }
 
-impl Default for Asked {
+impl Default for IdentifyOptions {
     fn default() -> Self {
-        Asked { method: Method::Auto, starts: 1, seed: 1 }
+        IdentifyOptions { method: IdentifyMethod::Auto, starts: 1, seed: 1 }
     }
 }
 
@@ -70,24 +70,29 @@ impl Default for Asked {
 ///
 /// # Errors
 /// As [`identify`].
-pub fn identify_as(world: &dyn World, study: &Path, data: Option<&Path>, asked: &Asked) -> Result<Identified, Error> {
-    let mut said = Said::default();
+pub fn identify_as(
+    world: &dyn World,
+    study: &Path,
+    data: Option<&Path>,
+    asked: &IdentifyOptions,
+) -> Result<Identified, Error> {
+    let mut said = IdentificationMessages::default();
     let read = Study::read(world, study, &mut said.sources);
     let study = said.take(read)?;
-    let outcome = compile(world, &study.request(), &Options::default());
+    let outcome = compile(world, &study.request(), &LoweringOptions::default());
     let Some(model) = outcome.value else {
         return Err(Error { diagnostics: outcome.diagnostics, sources: Arc::new(outcome.sources) });
     };
     let bound = said.take(study.bind(&model.flat))?;
-    let load = |role, said: &mut Said| -> Result<Vec<Recording>, Error> {
+    let load = |role, said: &mut IdentificationMessages| -> Result<Vec<Recording>, Error> {
         let loaded = bound.load(world, data, role, &mut said.sources);
         said.take(loaded)
     };
-    let train = load(Role::Train, &mut said)?;
-    let problem = Problem::new(&model, &bound, &train).map_err(|d| said.error(d))?;
+    let train = load(RecordingRole::Train, &mut said)?;
+    let problem = IdentificationProblem::new(&model, &bound, &train).map_err(|d| said.error(d))?;
     let found = Identification::new(&problem, &train, asked.method).map_err(|d| said.error(vec![d]))?;
     let fit = found.fit_from(asked.starts, asked.seed).map_err(|d| said.error(vec![d]))?;
-    let held = if bound.has(Role::Held) { load(Role::Held, &mut said)? } else { Vec::new() };
+    let held = if bound.has(RecordingRole::Held) { load(RecordingRole::Held, &mut said)? } else { Vec::new() };
     let held = match held.is_empty() {
         true => Vec::new(),
         false => found.judge_held(&fit, &held).map_err(|d| said.error(vec![d]))?,
@@ -95,7 +100,7 @@ pub fn identify_as(world: &dyn World, study: &Path, data: Option<&Path>, asked: 
     said.diagnostics.extend(found.suspicions.iter().cloned());
     said.diagnostics.extend(doubts(&problem, &fit, &held));
     Ok(Identified {
-        report: Report::new(&problem, &found, &fit, &held, &[]),
+        report: IdentificationReport::new(&problem, &found, &fit, &held, &[]),
         words: fit_words(&problem, &fit, &held),
         diagnostics: said.diagnostics,
         sources: Arc::new(said.sources),
@@ -104,13 +109,13 @@ pub fn identify_as(world: &dyn World, study: &Path, data: Option<&Path>, asked: 
 
 /// What was said so far, with the texts it points into.
 #[derive(Default)]
-struct Said {
+struct IdentificationMessages {
     sources: Sources,
     diagnostics: Vec<Diagnostic>,
 }
 
-impl Said {
-    fn take<T>(&mut self, checked: Checked<T>) -> Result<T, Error> {
+impl IdentificationMessages {
+    fn take<T>(&mut self, checked: StageResult<T>) -> Result<T, Error> {
         let Some(value) = checked.value else { return Err(self.error(checked.diagnostics)) };
         self.diagnostics.extend(checked.diagnostics);
         Ok(value)

@@ -1,5 +1,5 @@
 use super::*;
-use crate::study::{Role, Study};
+use crate::study::{RecordingRole, Study};
 use bramah_syntax::diag::Sources;
 use bramah_syntax::world::MemoryWorld;
 use std::path::Path;
@@ -54,30 +54,30 @@ pub(super) fn world(model: &str, study: &str, train: String, held: String) -> Me
 /// Runs everything and hands the fit to `see`.
 pub(super) fn with_fit<T>(
     world: &MemoryWorld,
-    method: Method,
-    see: impl FnOnce(&Problem<'_>, &Identification<'_>, &Fit) -> T,
+    method: IdentifyMethod,
+    see: impl FnOnce(&IdentificationProblem<'_>, &Identification<'_>, &ParameterFit) -> T,
 ) -> T {
     let mut sources = Sources::default();
     let study = Study::read(world, Path::new("study.toml"), &mut sources).value.expect("a study");
     let outcome =
-        bramah_circuit::compiled::compile(world, &study.request(), &bramah_solve::lower::Options::INTERPRETED);
+        bramah_circuit::compiled::compile(world, &study.request(), &bramah_solve::lower::LoweringOptions::INTERPRETED);
     let model = outcome.value.unwrap_or_else(|| panic!("{:?}", outcome.diagnostics));
     let bound = study.bind(&model.flat).value.expect("fits");
-    let train = bound.load(world, None, Role::Train, &mut sources).value.expect("readable");
-    let problem = Problem::new(&model, &bound, &train).expect("can be asked");
+    let train = bound.load(world, None, RecordingRole::Train, &mut sources).value.expect("readable");
+    let problem = IdentificationProblem::new(&model, &bound, &train).expect("can be asked");
     let found = Identification::new(&problem, &train, method).expect("runs");
     let fit = found.fit().expect("runs");
     see(&problem, &found, &fit)
 }
 
 /// Runs everything and hands the report to `see`.
-fn identified<T>(world: &MemoryWorld, method: Method, see: impl FnOnce(&Report, &str) -> T) -> T {
+fn identified<T>(world: &MemoryWorld, method: IdentifyMethod, see: impl FnOnce(&IdentificationReport, &str) -> T) -> T {
     with_fit(world, method, |problem, found, fit| {
         let mut sources = Sources::default();
-        let held = problem.bound.load(world, None, Role::Held, &mut sources).value.expect("readable");
+        let held = problem.bound.load(world, None, RecordingRole::Held, &mut sources).value.expect("readable");
         let held = found.judge_held(fit, &held).expect("runs");
         let words = separation_words(problem, found) + &fit_words(problem, fit, &held);
-        see(&Report::new(problem, found, fit, &held, &[]), &words)
+        see(&IdentificationReport::new(problem, found, fit, &held, &[]), &words)
     })
 }
 
@@ -110,7 +110,7 @@ fn intervals_cover_the_truth_under_coloured_noise() {
                 noisy.push_str(&format!("{head},{}\n", x + 0.05 * noise.next()));
             }
             let world = world(LAG, &text, noisy, clean);
-            with_fit(&world, Method::Output, |problem, _, fit| {
+            with_fit(&world, IdentifyMethod::Output, |problem, _, fit| {
                 let holds = |j: usize, truth: f64| {
                     let (low, high) = fit.interval(problem, j);
                     usize::from(low <= truth && truth <= high)
@@ -123,7 +123,7 @@ fn intervals_cover_the_truth_under_coloured_noise() {
     assert!((183..=198).contains(&covered), "{covered} of {}", 2 * RUNS);
 }
 
-fn number(report: &Report, name: &str, what: &str) -> f64 {
+fn number(report: &IdentificationReport, name: &str, what: &str) -> f64 {
     report.parameters[name][what].as_f64().expect("a number")
 }
 
@@ -131,7 +131,7 @@ fn number(report: &Report, name: &str, what: &str) -> f64 {
 fn parameters_and_the_unknown_initial_state_are_found() {
     let text = study("T = { min = 0.01 }\nk = { sigma = \"80 %\" }\n");
     let world = world(LAG, &text, lag_recording(1, 0.02), lag_recording(2, 0.02));
-    identified(&world, Method::Auto, |report, _| {
+    identified(&world, IdentifyMethod::Auto, |report, _| {
         assert_eq!((report.method, report.converged, report.derivatives.as_str()), ("output error", true, "exact"));
         for (name, truth) in [("T", 0.5), ("k", 2.0)] {
             let (value, std) = (number(report, name, "value"), number(report, name, "std"));
@@ -147,7 +147,7 @@ fn parameters_and_the_unknown_initial_state_are_found() {
 fn what_cannot_be_told_apart_is_said_with_the_sensor_that_would() {
     let text = study("T = { min = 0.01 }\nk = { min = 0.1 }\ng = { min = 0.1 }\nidle = { min = 0.1 }\n");
     let world = world(LAG, &text, lag_recording(1, 0.02), lag_recording(2, 0.02));
-    identified(&world, Method::Output, |report, words| {
+    identified(&world, IdentifyMethod::Output, |report, words| {
         assert_eq!(report.inseparable.len(), 2);
         assert_eq!(report.inseparable[0], ["idle"]);
         assert!(report.inseparable[1].contains(&"k".to_owned()) && report.inseparable[1].contains(&"g".to_owned()));
@@ -159,7 +159,7 @@ fn what_cannot_be_told_apart_is_said_with_the_sensor_that_would() {
 fn a_bound_that_holds_is_named() {
     let text = study("T = { min = 0.8 }\nk = { min = 0.1 }\n");
     let world = world(LAG, &text, lag_recording(1, 0.02), lag_recording(2, 0.02));
-    identified(&world, Method::Output, |report, words| {
+    identified(&world, IdentifyMethod::Output, |report, words| {
         assert_eq!(report.at_bound, ["T"]);
         assert!(words.contains("`T` ended at a bound"));
     });
@@ -187,7 +187,7 @@ fn the_inverse_model_finds_mass_and_friction() {
         text
     };
     let world = world(model, &study("M = { min = 0.1 }\nd = { min = 0.0 }\n"), recording(1.0, 3), recording(0.0, 4));
-    identified(&world, Method::Auto, |report, _| {
+    identified(&world, IdentifyMethod::Auto, |report, _| {
         assert_eq!(report.method, "inverse model");
         for (name, truth) in [("M", 4.0), ("d", 3.0)] {
             let (value, std) = (number(report, name, "value"), number(report, name, "std"));
@@ -208,7 +208,7 @@ fn derivatives_of_runs_agree_with_differences() {
     };
     let gap: String = lag_recording(1, 0.02).lines().enumerate().map(line).collect();
     let world = world(model, &text, gap, lag_recording(2, 0.02));
-    with_fit(&world, Method::Output, |problem, found, fit| {
+    with_fit(&world, IdentifyMethod::Output, |problem, found, fit| {
         assert_eq!(fit.differences, None);
         let mut exact = found.output_error().expect("starts");
         let mut plain = OutputError::new(problem, found.train, None).expect("starts");
@@ -245,7 +245,7 @@ fn pieces_of_an_unstable_recording() {
          [parameters]\na = {{ min = 0.1 }}\nk = {{ min = 0.1 }}\n"
     );
     let world = world(model, &study, text.clone(), text);
-    with_fit(&world, Method::Output, |_, _, fit| {
+    with_fit(&world, IdentifyMethod::Output, |_, _, fit| {
         assert!(fit.converged && fit.differences.is_none());
         for (j, truth) in [3.0, 2.0].into_iter().enumerate() {
             let (value, std) = (fit.values[j], fit.deviations[j]);
@@ -264,7 +264,7 @@ fn no_more_samples_than_unknowns_tell_nothing_about_deviations() {
     let parameters = "T = { min = 0.1, max = 10.0 }\nk = { min = 0.1, max = 10.0 }";
     for (samples, known) in [(3, false), (60, true)] {
         let world = world(LAG, &study(parameters), few(samples), few(samples));
-        identified(&world, Method::Output, |report, words| {
+        identified(&world, IdentifyMethod::Output, |report, words| {
             let finite = |key: &str| ["T", "k"].map(|name| report.parameters[name][key].is_number());
             assert_eq!((finite("std"), finite("degrees")), ([known; 2], [known; 2]), "{words}");
             assert_eq!(words.contains("nothing tells how sure the values are"), !known, "{words}");
@@ -279,7 +279,7 @@ fn sampled_models_are_fitted_by_differences() {
         Real x(start = 0.7, fixed = true);
         equation when sample(0, 0.1) then g = k*u; end when; 0.5*der(x) = g - x; end Held;";
     let world = world(model, &study("k = { min = 0.1 }\n"), lag_recording(1, 0.02), lag_recording(2, 0.02));
-    identified(&world, Method::Output, |report, words| {
+    identified(&world, IdentifyMethod::Output, |report, words| {
         assert_eq!(report.derivatives, "differences: sampled values depend on what moves");
         assert!(words.contains("derivatives: differences: sampled values depend on what moves"));
     });
@@ -291,15 +291,18 @@ fn questions_without_sense() {
         let world = world(LAG, text, lag_recording(1, 0.02), lag_recording(2, 0.02));
         let mut sources = Sources::default();
         let study = Study::read(&world, Path::new("study.toml"), &mut sources).value.expect("a study");
-        let model =
-            bramah_circuit::compiled::compile(&world, &study.request(), &bramah_solve::lower::Options::INTERPRETED)
-                .value
-                .unwrap();
+        let model = bramah_circuit::compiled::compile(
+            &world,
+            &study.request(),
+            &bramah_solve::lower::LoweringOptions::INTERPRETED,
+        )
+        .value
+        .unwrap();
         let bound = study.bind(&model.flat).value.expect("fits");
-        let train = bound.load(&world, None, Role::Train, &mut sources).value.expect("readable");
-        match Problem::new(&model, &bound, &train) {
+        let train = bound.load(&world, None, RecordingRole::Train, &mut sources).value.expect("readable");
+        match IdentificationProblem::new(&model, &bound, &train) {
             Err(d) => d[0].message.clone(),
-            Ok(p) => Identification::new(&p, &train, Method::Inverse).err().expect("no inverse").message,
+            Ok(p) => Identification::new(&p, &train, IdentifyMethod::Inverse).err().expect("no inverse").message,
         }
     };
     assert_eq!(said(&study("T = \"exact\"\n")), "the study has no parameters to find");
@@ -323,7 +326,7 @@ fn profiles_of_a_linear_fit_agree_with_the_deviations_and_open_ones_are_open() {
     let text =
         study("a = { min = -9.0, max = 9.0 }\nb = { min = -9.0, max = 9.0 }\nidle = { min = -2.0, max = 2.0 }\n");
     let world = world(model, &text, format!("time,u,x\n{rows}"), format!("time,u,x\n{rows}"));
-    with_fit(&world, Method::Output, |problem, found, fit| {
+    with_fit(&world, IdentifyMethod::Output, |problem, found, fit| {
         for (j, truth) in [2.0, 3.0].into_iter().enumerate() {
             let profile = found.profile(fit, j).expect("runs");
             let (value, half) = (fit.values[j], chance::student(fit.degrees[j]) * fit.deviations[j]);
@@ -366,11 +369,11 @@ fn several_starts_find_the_least_of_many_minima() {
     let rows: String = (0..400).map(|k| 0.05 * f64::from(k)).map(row).collect();
     let text = format!("time,u,x\n{rows}");
     let world = world(model, &study("w = { min = 0.1, max = 9.0 }\n"), text.clone(), text);
-    with_fit(&world, Method::Output, |problem, found, fit| {
+    with_fit(&world, IdentifyMethod::Output, |problem, found, fit| {
         assert!((fit.values[0] - 2.2).abs() > 0.5 && fit.starts.tried == 1, "{:?}", fit.values);
         let several = found.fit_from(24, 1).expect("runs");
         assert!((several.values[0] - 2.2).abs() < 0.01, "{:?} {:?}", several.values, several.starts);
-        let Starts { tried, here, worse, failed } = several.starts;
+        let MultistartSummary { tried, here, worse, failed } = several.starts;
         assert!(tried == 24 && here > 0 && worse > 0 && here + worse + failed == tried, "{:?}", several.starts);
         let words = fit_words(problem, &several, &[]);
         assert!(words.contains(&format!("of 24 starts {here} led to this least value, {worse} to larger ones")));
@@ -386,7 +389,7 @@ fn a_derivative_without_a_value_is_left_to_differences() {
     let rows: String = (0..50).map(|i| 0.02 * f64::from(i)).map(|t| format!("{t},0,{}\n", (2.0 * t).sqrt())).collect();
     let text = format!("time,u,x\n{rows}");
     let world = world(model, &study("k = { min = 0.1 }\n"), text.clone(), text);
-    with_fit(&world, Method::Output, |_, _, fit| {
+    with_fit(&world, IdentifyMethod::Output, |_, _, fit| {
         assert!(fit.differences.as_ref().is_some_and(|why| why.contains("not finite")), "{:?}", fit.differences);
         assert!(fit.values[0].is_finite() && fit.deviations[0] > 0.0, "{:?}", fit.values);
     });
@@ -404,7 +407,7 @@ fn columns_of_another_sign_or_unit_are_suspected() {
     };
     for (factor, cause) in [(1.0, None), (-1.0, Some("a `sign`, of")), (1000.0, Some("a `unit`, of"))] {
         let world = world(LAG, &text, times(factor), times(factor));
-        with_fit(&world, Method::Output, |_, found, _| {
+        with_fit(&world, IdentifyMethod::Output, |_, found, _| {
             let said: Vec<&String> = found.suspicions.iter().flat_map(|d| &d.help).collect();
             match cause {
                 Some(cause) => assert!(said.len() == 1 && said[0].contains(cause), "{factor}: {said:?}"),

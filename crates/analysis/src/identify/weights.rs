@@ -1,12 +1,12 @@
 //! Weights of residuals: one standard deviation a signal, widened where neighbouring residuals resemble each other.
 
-use crate::estimate::{Series, correlation};
+use crate::estimate::{ResidualSeries, correlation};
 
 /// How the rows of a residual are weighed.
 #[derive(Clone, Debug)]
-pub struct Weights {
+pub struct ResidualWeights {
     /// The rows that come from data; others follow them.
-    pub series: Vec<Series>,
+    pub series: Vec<ResidualSeries>,
     /// Per signal what its errors are divided by: its standard deviation times the root of its correlation time.
     pub sigma: Vec<f64>,
     /// Per signal the standard deviation of its errors.
@@ -17,11 +17,11 @@ pub struct Weights {
     pub joint: f64,
 }
 
-impl Weights {
+impl ResidualWeights {
     /// With first guesses of the standard deviations.
-    pub fn new(series: Vec<Series>, sigma: Vec<f64>) -> Weights {
+    pub fn new(series: Vec<ResidualSeries>, sigma: Vec<f64>) -> ResidualWeights {
         let correlation = vec![1.0; sigma.len()];
-        Weights { series, correlation, deviation: sigma.clone(), sigma, joint: super::pieces::USUAL }
+        ResidualWeights { series, correlation, deviation: sigma.clone(), sigma, joint: super::pieces::USUAL }
     }
 
     /// Divides errors by their standard deviations.
@@ -70,8 +70,8 @@ mod tests {
 
     #[test]
     fn standard_deviations_are_learned() {
-        let series = vec![Series { recording: 0, signal: 0, rows: 0..4 }];
-        let mut weights = Weights::new(series, vec![2.0]);
+        let series = vec![ResidualSeries { recording: 0, signal: 0, rows: 0..4 }];
+        let mut weights = ResidualWeights::new(series, vec![2.0]);
         let mut errors = [2.0, -2.0, 2.0, -2.0];
         weights.scale(&mut errors);
         assert_eq!(errors, [1.0, -1.0, 1.0, -1.0]);

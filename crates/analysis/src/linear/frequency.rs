@@ -1,7 +1,7 @@
 //! Frequency responses, and pictures of them and of poles.
 
 use super::{Pole, StateSpace};
-use bramah_plot::{Figure, Panel, Series};
+use bramah_plot::{Figure, FigurePanel, PlotSeries};
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{PI, TAU};
 
@@ -46,12 +46,12 @@ pub fn bode(model: &StateSpace, poles: &[Pole]) -> Figure {
         for (j, input) in model.inputs.iter().enumerate() {
             let values: Vec<Option<Complex<f64>>> = responses.iter().map(|r| r.as_ref().map(|r| r[(i, j)])).collect();
             let name = format!("{} / {}", output.name, input.name);
-            let curve = |y: Vec<f64>| Series {
+            let curve = |y: Vec<f64>| PlotSeries {
                 name: name.clone(),
                 x: x.clone(),
                 y,
                 colour: magnitudes.len(),
-                ..Series::default()
+                ..PlotSeries::default()
             };
             let decibel = |v: &Option<Complex<f64>>| v.map_or(f64::NAN, |v| 20.0 * v.norm().log10());
             let magnitude = curve(values.iter().map(decibel).collect());
@@ -59,11 +59,11 @@ pub fn bode(model: &StateSpace, poles: &[Pole]) -> Figure {
             magnitudes.push(magnitude);
         }
     }
-    let panel = |y_label: &str, series| Panel {
+    let panel = |y_label: &str, series| FigurePanel {
         x_label: "log10 of the frequency in Hz".to_owned(),
         y_label: y_label.to_owned(),
         series,
-        ..Panel::default()
+        ..FigurePanel::default()
     };
     Figure {
         title: format!("{} at {} s", model.class, bramah_results::number::rounded(model.time, 6)),
@@ -109,8 +109,8 @@ pub fn plane(model: &StateSpace, poles: &[Pole]) -> Figure {
     Figure { title: format!("Poles of {}", model.class), panels, shared_x: false }
 }
 
-fn panel_of_poles(poles: &[&Pole], size: f64) -> Panel {
-    let mut crosses = Series { name: "poles".to_owned(), crosses: true, ..Series::default() };
+fn panel_of_poles(poles: &[&Pole], size: f64) -> FigurePanel {
+    let mut crosses = PlotSeries { name: "poles".to_owned(), crosses: true, ..PlotSeries::default() };
     for pole in poles {
         crosses.x.push(pole.re);
         crosses.y.push(pole.im);
@@ -119,18 +119,18 @@ fn panel_of_poles(poles: &[&Pole], size: f64) -> Panel {
             crosses.y.push(-pole.im);
         }
     }
-    let axis = Series {
+    let axis = PlotSeries {
         name: "imaginary axis".to_owned(),
         x: vec![0.0, 0.0],
         y: vec![-size, size],
         colour: 6,
         dashed: true,
-        ..Series::default()
+        ..PlotSeries::default()
     };
-    Panel {
+    FigurePanel {
         x_label: "real part in 1/s".to_owned(),
         y_label: "imaginary part in 1/s".to_owned(),
         series: vec![crosses, axis],
-        ..Panel::default()
+        ..FigurePanel::default()
     }
 }

@@ -9,13 +9,13 @@ mod scheduled;
 pub use export::{csv, mat, modelica, words};
 pub use frequency::{bode, plane, response};
 pub use modal::{Pole, poles, zeros};
-pub use schedule::{Schedule, schedule};
+pub use schedule::{QuasiLpvModel, schedule};
 
-use super::local::{Local, LocalError, Plan};
-use super::{Lifted, lift};
+use super::local::{EvaluationPlan, LocalError, LocalEvaluator};
+use super::{StateAugmentedModel, lift};
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
-use bramah_model::flat::{FlatModel, Type, Variability, Variable};
+use bramah_model::flat::{FlatModel, FlatVariable, ScalarType, Variability};
 use bramah_solve::State;
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 use nalgebra::DMatrix;
@@ -35,7 +35,7 @@ pub struct Quantity {
 }
 
 impl Quantity {
-    fn of(variable: &Variable, value: f64, nominal: f64) -> Self {
+    fn of(variable: &FlatVariable, value: f64, nominal: f64) -> Self {
         let unit = variable.unit.as_deref().unwrap_or("").to_owned();
         Quantity { name: variable.name.clone(), unit, value, nominal }
     }
@@ -74,18 +74,18 @@ pub struct StateSpace {
 
 /// Which quantities a linear model has.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Choice {
+pub struct InputOutputSelection {
     /// Inputs: top-level inputs or parameters. Empty for all top-level inputs.
     pub inputs: Vec<String>,
     /// Outputs: any variables. Empty for all top-level outputs, or else all states.
     pub outputs: Vec<String>,
 }
 
-/// A model lifted for a [`Choice`].
+/// A model lifted for a [`InputOutputSelection`].
 #[derive(Clone, Debug)]
-pub struct Chosen {
+pub struct LinearizationSetup {
     /// What is evaluated.
-    pub plan: Arc<Plan>,
+    pub plan: Arc<EvaluationPlan>,
     /// Raised parameters, as inputs.
     parameters: Vec<VarId>,
     /// All top-level inputs, in declaration order.
@@ -94,35 +94,39 @@ pub struct Chosen {
     columns: Vec<(usize, VarId)>,
     outputs: Vec<VarId>,
     /// What schedules, where the choice was made for a quasi-linear form.
-    rho: Vec<Scheduling>,
+    rho: Vec<SchedulingVariable>,
 }
 
 /// A quantity that schedules.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scheduling {
+pub struct SchedulingVariable {
     /// Its name.
     pub name: String,
     /// Its unit; may be empty.
     pub unit: String,
     /// Where it is found.
-    source: Source,
+    source: SchedulingSource,
 }
 
 /// Where a scheduling quantity is found.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Source {
+enum SchedulingSource {
     /// Among raised parameters, then inputs.
     Given(usize),
     /// Among the outputs.
     Output(usize),
 }
 
-impl Chosen {
+impl LinearizationSetup {
     /// Finds the names and lifts the model. `extra` are raised too, whatever the choice says.
     ///
     /// # Errors
     /// [`Code::BadArgument`] for names that the model does not have, that cannot be used so, or that stand twice.
-    pub fn new(flat: &FlatModel, choice: &Choice, extra: &[VarId]) -> Result<Chosen, Vec<Diagnostic>> {
+    pub fn new(
+        flat: &FlatModel,
+        choice: &InputOutputSelection,
+        extra: &[VarId],
+    ) -> Result<LinearizationSetup, Vec<Diagnostic>> {
         once(&choice.inputs, "input").map_err(|d| vec![d])?;
         once(&choice.outputs, "output").map_err(|d| vec![d])?;
         let all_inputs: Vec<VarId> = ids(flat).filter(|v| flat.variables[v.index()].input).collect();
@@ -134,18 +138,18 @@ impl Chosen {
             true => ids(flat).filter(|v| flat.variables[v.index()].output && is_real(flat, *v)).collect(),
             false => names(flat, &choice.outputs, output_fits).map_err(|d| vec![d])?,
         };
-        let plan = Plan::new(&lift(flat, &parameters, &outputs))?;
+        let plan = EvaluationPlan::new(&lift(flat, &parameters, &outputs))?;
         let place = |v: &VarId| {
             let own = parameters.iter().position(|p| p == v);
             own.or_else(|| all_inputs.iter().position(|i| i == v).map(|i| parameters.len() + i))
         };
         let columns = wanted.iter().filter_map(|v| place(v).map(|c| (c, *v))).collect();
         let rho = Vec::new();
-        let mut chosen = Chosen { plan: Arc::new(plan), parameters, all_inputs, columns, outputs, rho };
+        let mut chosen = LinearizationSetup { plan: Arc::new(plan), parameters, all_inputs, columns, outputs, rho };
         if chosen.outputs.is_empty() {
             chosen.outputs = chosen.plan.state_variables().collect();
-            let lifted: Lifted = lift(flat, &chosen.parameters, &chosen.outputs);
-            chosen.plan = Arc::new(Plan::new(&lifted)?);
+            let lifted: StateAugmentedModel = lift(flat, &chosen.parameters, &chosen.outputs);
+            chosen.plan = Arc::new(EvaluationPlan::new(&lifted)?);
         }
         Ok(chosen)
     }
@@ -153,8 +157,12 @@ impl Chosen {
     /// For a quasi-linear form with these inputs, scheduled by inputs, parameters or other variables.
     ///
     /// # Errors
-    /// As [`Chosen::new`].
-    pub fn scheduled(flat: &FlatModel, inputs: &[String], rho: &[String]) -> Result<Chosen, Vec<Diagnostic>> {
+    /// As [`LinearizationSetup::new`].
+    pub fn scheduled(
+        flat: &FlatModel,
+        inputs: &[String],
+        rho: &[String],
+    ) -> Result<LinearizationSetup, Vec<Diagnostic>> {
         once(rho, "scheduling quantity").map_err(|d| vec![d])?;
         let given = |name: &String| {
             let found = flat.variables.iter().position(|v| v.name == *name);
@@ -162,23 +170,23 @@ impl Chosen {
         };
         let (outside, inside): (Vec<String>, Vec<String>) = rho.iter().cloned().partition(given);
         let extra = names(flat, &outside, input_fits).map_err(|d| vec![d])?;
-        let choice = Choice { inputs: inputs.to_vec(), outputs: inside.clone() };
-        let mut chosen = Chosen::new(flat, &choice, &extra)?;
+        let choice = InputOutputSelection { inputs: inputs.to_vec(), outputs: inside.clone() };
+        let mut chosen = LinearizationSetup::new(flat, &choice, &extra)?;
         for name in rho {
             let output = inside.iter().position(|n| n == name);
             let v = ids(flat).find(|v| flat.variables[v.index()].name == *name).expect("found before");
             let source = match output {
-                Some(k) => Source::Output(k),
-                None => Source::Given(chosen.place(v).expect("raised above")),
+                Some(k) => SchedulingSource::Output(k),
+                None => SchedulingSource::Given(chosen.place(v).expect("raised above")),
             };
             let unit = flat.variables[v.index()].unit.as_deref().unwrap_or("").to_owned();
-            chosen.rho.push(Scheduling { name: name.clone(), unit, source });
+            chosen.rho.push(SchedulingVariable { name: name.clone(), unit, source });
         }
         Ok(chosen)
     }
 
     /// What schedules.
-    pub fn rho(&self) -> &[Scheduling] {
+    pub fn rho(&self) -> &[SchedulingVariable] {
         &self.rho
     }
 
@@ -213,9 +221,9 @@ impl Chosen {
     ///
     /// # Errors
     /// When the equations have no solution there.
-    pub fn at(&self, state: &State) -> Result<Local, LocalError> {
+    pub fn at(&self, state: &State) -> Result<LocalEvaluator, LocalError> {
         let (theta, u) = self.given(state);
-        let mut local = Local::start(self.plan.clone(), state.time, &theta, &u)?;
+        let mut local = LocalEvaluator::start(self.plan.clone(), state.time, &theta, &u)?;
         local.adopt(state);
         let x = local.state();
         local.linearize(state.time, &x, &theta, &u)?;
@@ -226,8 +234,8 @@ impl Chosen {
 /// The linear model at a state.
 ///
 /// # Errors
-/// As [`Chosen::at`].
-pub fn linearize(model: &CompiledModel, chosen: &Chosen, state: &State) -> Result<StateSpace, LocalError> {
+/// As [`LinearizationSetup::at`].
+pub fn linearize(model: &CompiledModel, chosen: &LinearizationSetup, state: &State) -> Result<StateSpace, LocalError> {
     let local = chosen.at(state)?;
     let system = &chosen.plan.system;
     let variables = &system.dae.variables;
@@ -266,7 +274,7 @@ fn ids(flat: &FlatModel) -> impl Iterator<Item = VarId> {
 }
 
 fn is_real(flat: &FlatModel, v: VarId) -> bool {
-    flat.variables[v.index()].ty == Type::Real
+    flat.variables[v.index()].ty == ScalarType::Real
 }
 
 fn input_fits(flat: &FlatModel, v: VarId) -> bool {

@@ -5,8 +5,8 @@
 //! g on each leg over the quantity itself is its column (the secant, not the slope, so nothing is lost), and what is
 //! left at rho = 0 belongs to the constant input 1.
 
-use super::{Chosen, Quantity, Source};
-use crate::local::Local;
+use super::{LinearizationSetup, Quantity, SchedulingSource};
+use crate::local::LocalEvaluator;
 use bramah_expr::VarId;
 use bramah_solve::State;
 use bramah_syntax::diag::{Code, Diagnostic};
@@ -15,13 +15,13 @@ use serde_json::{Value, json};
 
 /// A model in quasi-linear form over a grid.
 #[derive(Clone, Debug)]
-pub struct Schedule {
+pub struct QuasiLpvModel {
     /// The class.
     pub class: String,
     /// Names of the scheduling quantities.
     pub rho: Vec<String>,
     /// What each of them is a multiple of.
-    pub(super) legs: Vec<Leg>,
+    pub(super) legs: Vec<SchedulingCoordinate>,
     /// The states, with their values at the operating point.
     pub states: Vec<Quantity>,
     /// The inputs; behind them stands the constant one.
@@ -29,7 +29,7 @@ pub struct Schedule {
     /// The values of each scheduling quantity, ascending.
     pub grid: Vec<Vec<f64>>,
     /// All combinations of them, the last quantity fastest.
-    pub points: Vec<Point>,
+    pub points: Vec<LpvGridPoint>,
     /// Per state the largest difference between A x + B u and the rate, over the largest term of the row, at random
     /// states and inputs: at most about 1e-12 where the form is exact.
     pub error: Vec<f64>,
@@ -39,7 +39,7 @@ pub struct Schedule {
 
 /// The matrices at one point.
 #[derive(Clone, Debug)]
-pub struct Point {
+pub struct LpvGridPoint {
     /// Values of the scheduling quantities.
     pub rho: Vec<f64>,
     /// By states and states.
@@ -50,7 +50,7 @@ pub struct Point {
 
 /// A scheduling quantity: `factor * (w - origin)` of a state or input w.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Leg {
+pub(super) struct SchedulingCoordinate {
     /// Among states, then inputs.
     pub column: usize,
     pub factor: f64,
@@ -58,14 +58,14 @@ pub(super) struct Leg {
 }
 
 /// Evaluates the rates over states and inputs together.
-struct Field {
-    local: Local,
+struct VectorField {
+    local: LocalEvaluator,
     time: f64,
     states: usize,
     parameters: usize,
 }
 
-impl Field {
+impl VectorField {
     fn split<'w>(&self, w: &'w [f64]) -> (&'w [f64], &'w [f64], &'w [f64]) {
         let (x, rest) = w.split_at(self.states);
         let (theta, u) = rest.split_at(self.parameters);
@@ -95,27 +95,27 @@ impl Field {
     }
 }
 
-/// Builds the form of `chosen`, which was made by [`Chosen::scheduled`], around a state. `grid` holds the values of each
+/// Builds the form of `chosen`, which was made by [`LinearizationSetup::scheduled`], around a state. `grid` holds the values of each
 /// scheduling quantity, or nothing for five over its range. `ranges` are the smallest and largest values of
-/// [`Chosen::quantities`], for the random check.
+/// [`LinearizationSetup::quantities`], for the random check.
 ///
 /// # Errors
 /// [`Code::BadArgument`] when a scheduling quantity is not affine in one state or input, or where the equations have no
 /// value on the grid.
 pub fn schedule(
-    chosen: &Chosen,
+    chosen: &LinearizationSetup,
     state: &State,
     grid: &[Option<Vec<f64>>],
     ranges: &[(f64, f64)],
-) -> Result<Schedule, Diagnostic> {
+) -> Result<QuasiLpvModel, Diagnostic> {
     let local = chosen.at(state).map_err(|e| no_value(&e.to_string()))?;
     let (theta, u) = chosen.given(state);
     let w0: Vec<f64> = local.state().into_iter().chain(theta.iter().copied()).chain(u).collect();
     let plan = chosen.plan.clone();
-    let mut field = Field { time: state.time, states: plan.states(), parameters: plan.parameters(), local };
+    let mut field = VectorField { time: state.time, states: plan.states(), parameters: plan.parameters(), local };
     let rho: Vec<String> = chosen.rho.iter().map(|r| r.name.clone()).collect();
     let legs = legs(&mut field, &w0, ranges, chosen)?;
-    let even = |leg: &Leg| {
+    let even = |leg: &SchedulingCoordinate| {
         let (low, high) = ranges[leg.column];
         let at = |i: u32| leg.factor * (low + (high - low) * f64::from(i) / 4.0 - leg.origin);
         (0..5).map(at).collect::<Vec<f64>>()
@@ -129,7 +129,7 @@ pub fn schedule(
     for values in products(&grid) {
         let found = factorised(&mut field, &legs, &w0, &values);
         let (a, b) = found.ok_or_else(|| no_value(&format!("at {}", shown(&rho, &values))))?;
-        points.push(Point { rho: values, a, b });
+        points.push(LpvGridPoint { rho: values, a, b });
     }
     let (error, tried) = check(&mut field, &legs, &w0, ranges);
     let variables = &plan.system.dae.variables;
@@ -137,7 +137,7 @@ pub fn schedule(
     let mut states: Vec<Quantity> = chosen.quantities().zip(&w0).map(quantity).collect();
     let inputs = states.split_off(field.states);
     let class = plan.system.dae.class.clone();
-    Ok(Schedule { class, rho, legs, states, inputs, grid, points, error, tried })
+    Ok(QuasiLpvModel { class, rho, legs, states, inputs, grid, points, error, tried })
 }
 
 fn no_value(why: &str) -> Diagnostic {
@@ -151,7 +151,12 @@ fn shown(names: &[String], values: &[f64]) -> String {
 }
 
 /// The state or input that each scheduling quantity is a multiple of.
-fn legs(field: &mut Field, w0: &[f64], ranges: &[(f64, f64)], chosen: &Chosen) -> Result<Vec<Leg>, Diagnostic> {
+fn legs(
+    field: &mut VectorField,
+    w0: &[f64],
+    ranges: &[(f64, f64)],
+    chosen: &LinearizationSetup,
+) -> Result<Vec<SchedulingCoordinate>, Diagnostic> {
     let mut seen = Vec::new();
     for part in [0.3, 0.62] {
         let w: Vec<f64> = w0.iter().zip(ranges).map(|(w, (low, high))| w + part * 0.2 * (high - low)).collect();
@@ -162,8 +167,10 @@ fn legs(field: &mut Field, w0: &[f64], ranges: &[(f64, f64)], chosen: &Chosen) -
         seen.push((w, rows));
     }
     let legs = chosen.rho.iter().map(|r| match r.source {
-        Source::Given(place) => Ok(Leg { column: field.states + place, factor: 1.0, origin: 0.0 }),
-        Source::Output(k) => leg(&seen, k).ok_or_else(|| {
+        SchedulingSource::Given(place) => {
+            Ok(SchedulingCoordinate { column: field.states + place, factor: 1.0, origin: 0.0 })
+        }
+        SchedulingSource::Output(k) => leg(&seen, k).ok_or_else(|| {
             let text = format!("`{}` is not a multiple of one state or input, so it cannot schedule", r.name);
             Diagnostic::new(Code::BadArgument, text)
         }),
@@ -172,13 +179,17 @@ fn legs(field: &mut Field, w0: &[f64], ranges: &[(f64, f64)], chosen: &Chosen) -
 }
 
 /// An output that is affine in one quantity alone: its derivatives are the same at two points.
-fn leg(seen: &[(Vec<f64>, Vec<(Vec<f64>, f64)>)], k: usize) -> Option<Leg> {
+fn leg(seen: &[(Vec<f64>, Vec<(Vec<f64>, f64)>)], k: usize) -> Option<SchedulingCoordinate> {
     let [(w, first), (_, second)] = seen else { return None };
     let ((row, value), (again, _)) = (&first[k], &second[k]);
     let mut used = (0..row.len()).filter(|&j| row[j] != 0.0 || again[j] != 0.0);
     let j = used.next()?;
     let same = (row[j] - again[j]).abs() <= 1e-12 * row[j].abs();
-    (used.next().is_none() && same).then(|| Leg { column: j, factor: row[j], origin: w[j] - value / row[j] })
+    (used.next().is_none() && same).then(|| SchedulingCoordinate {
+        column: j,
+        factor: row[j],
+        origin: w[j] - value / row[j],
+    })
 }
 
 /// All combinations, the last quantity fastest.
@@ -191,9 +202,14 @@ fn products(grid: &[Vec<f64>]) -> Vec<Vec<f64>> {
 }
 
 /// A and B at values of the scheduling quantities; other quantities enter through exact derivatives at `w0`.
-fn factorised(field: &mut Field, legs: &[Leg], w0: &[f64], rho: &[f64]) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
+fn factorised(
+    field: &mut VectorField,
+    legs: &[SchedulingCoordinate],
+    w0: &[f64],
+    rho: &[f64],
+) -> Option<(DMatrix<f64>, DMatrix<f64>)> {
     let n = field.states;
-    let place = |leg: &Leg, value: f64| leg.origin + value / leg.factor;
+    let place = |leg: &SchedulingCoordinate, value: f64| leg.origin + value / leg.factor;
     let mut w = w0.to_vec();
     legs.iter().zip(rho).for_each(|(leg, &value)| w[leg.column] = place(leg, value));
     let scheduled = |j: usize| legs.iter().any(|l| l.column == j);
@@ -231,7 +247,7 @@ fn factorised(field: &mut Field, legs: &[Leg], w0: &[f64], rho: &[f64]) -> Optio
 }
 
 /// g: the rates without the part that is linear in what does not schedule.
-fn free_part(field: &mut Field, w: &[f64], w0: &[f64], scheduled: &dyn Fn(usize) -> bool) -> Option<Vec<f64>> {
+fn free_part(field: &mut VectorField, w: &[f64], w0: &[f64], scheduled: &dyn Fn(usize) -> bool) -> Option<Vec<f64>> {
     let (rates, slopes) = field.slopes(w)?;
     let rest = |i: usize| (0..w.len()).filter(|&j| !scheduled(j)).map(|j| slopes[(i, j)] * w0[j]).sum::<f64>();
     Some((0..rates.len()).map(|i| rates[i] - rest(i)).collect())
@@ -241,7 +257,12 @@ fn free_part(field: &mut Field, w: &[f64], w0: &[f64], scheduled: &dyn Fn(usize)
 const TRIES: usize = 200;
 
 /// Compares A x + B u with the rates at random states and inputs.
-fn check(field: &mut Field, legs: &[Leg], w0: &[f64], ranges: &[(f64, f64)]) -> (Vec<f64>, usize) {
+fn check(
+    field: &mut VectorField,
+    legs: &[SchedulingCoordinate],
+    w0: &[f64],
+    ranges: &[(f64, f64)],
+) -> (Vec<f64>, usize) {
     let n = field.states;
     let mut error = vec![0.0f64; n];
     let mut tried = 0;
@@ -274,7 +295,7 @@ fn halton(k: usize, j: usize) -> f64 {
     value
 }
 
-impl Schedule {
+impl QuasiLpvModel {
     /// Whether the form is exact at all states tried.
     pub fn is_exact(&self) -> bool {
         self.tried > 0 && self.error.iter().all(|e| *e <= 1e-12)

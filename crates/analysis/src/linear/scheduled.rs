@@ -1,12 +1,12 @@
 //! Files of a quasi-linear form: a Modelica model that simulates, a MATLAB file.
 
-use super::schedule::{Point, Schedule};
+use super::schedule::{LpvGridPoint, QuasiLpvModel};
 use bramah_results::mat::write_matrix;
 use bramah_results::number::text;
 use nalgebra::DMatrix;
 use std::fmt::Write as _;
 
-impl Schedule {
+impl QuasiLpvModel {
     /// A MATLAB file of version 4: `rho` with a row for each point of the grid, `A` and `B` of all points side by side (those
     /// of point k are `A(:, (k-1)*n+1 : k*n)` and `B(:, (k-1)*m+1 : k*m)`, the last column of `B` being that of the
     /// constant input 1), and the operating point `x0`, `u0`.
@@ -17,7 +17,7 @@ impl Schedule {
         };
         let rho: Vec<f64> = (0..self.rho.len()).flat_map(|k| self.points.iter().map(move |p| p.rho[k])).collect();
         put("rho", self.points.len(), &rho);
-        let side_by_side = |of: &dyn Fn(&Point) -> &DMatrix<f64>| -> Vec<f64> {
+        let side_by_side = |of: &dyn Fn(&LpvGridPoint) -> &DMatrix<f64>| -> Vec<f64> {
             self.points.iter().flat_map(|p| of(p).as_slice().to_vec()).collect()
         };
         put("A", self.states.len(), &side_by_side(&|p| &p.a));
@@ -116,7 +116,7 @@ impl Schedule {
             let list = numbers(&mut values.iter().copied());
             let _ = writeln!(out, "    constant Real grid_{a}[{}] = {{{list}}};", values.len());
         }
-        let row = |p: &Point| {
+        let row = |p: &LpvGridPoint| {
             let row = numbers(&mut entries.iter().map(|&(i, j)| entry(p, i, j)));
             format!("{{{}}}", or_zero(row))
         };
@@ -156,7 +156,7 @@ impl Schedule {
     }
 }
 
-fn entry(point: &Point, i: usize, j: usize) -> f64 {
+fn entry(point: &LpvGridPoint, i: usize, j: usize) -> f64 {
     let n = point.a.ncols();
     if j < n { point.a[(i, j)] } else { point.b[(i, j - n)] }
 }

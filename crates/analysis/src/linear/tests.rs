@@ -26,7 +26,8 @@ const OSCILLATOR: &str = "model M
 
 fn oscillator() -> StateSpace {
     let (simulation, state) = start(OSCILLATOR);
-    let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
+    let chosen =
+        LinearizationSetup::new(&simulation.model().flat, &InputOutputSelection::default(), &[]).expect("fits");
     linearize(simulation.model(), &chosen, &state).expect("has derivatives")
 }
 
@@ -54,7 +55,8 @@ fn matrices_poles_and_zeros_of_an_oscillator() {
 /// Poles of states and their shares, in whole per cent, of a model that is at its start.
 fn modes(text: &str) -> Vec<(f64, usize, Vec<(String, i64)>)> {
     let (simulation, state) = start(text);
-    let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
+    let chosen =
+        LinearizationSetup::new(&simulation.model().flat, &InputOutputSelection::default(), &[]).expect("fits");
     let model = linearize(simulation.model(), &chosen, &state).expect("has derivatives");
     let shares = |p: &Pole| {
         let mut named: Vec<(String, i64)> =
@@ -116,7 +118,8 @@ fn zeros_of_a_lead() {
         "model M input Real u(start = 0); Real x(start = 0, fixed = true), z(start = 0, fixed = true); output Real y;
       equation der(x) = -x + u; der(z) = -10*z + u; y = (2*x + 7*z)/9; end M;";
     let (simulation, state) = start(text);
-    let chosen = Chosen::new(&simulation.model().flat, &Choice::default(), &[]).expect("fits");
+    let chosen =
+        LinearizationSetup::new(&simulation.model().flat, &InputOutputSelection::default(), &[]).expect("fits");
     let model = linearize(simulation.model(), &chosen, &state).expect("has derivatives");
     let found = zeros(&model, 0, 0);
     assert!(found.len() == 1 && (found[0].re + 3.0).abs() < 1e-9, "{found:?}");
@@ -140,8 +143,8 @@ fn words_and_files() {
 fn names_that_do_not_fit() {
     let (simulation, _) = start(OSCILLATOR);
     let said = |inputs: &[&str], outputs: &[&str]| {
-        let choice = Choice { inputs: strings(inputs), outputs: strings(outputs) };
-        Chosen::new(&simulation.model().flat, &choice, &[]).expect_err("does not fit")[0].message.clone()
+        let choice = InputOutputSelection { inputs: strings(inputs), outputs: strings(outputs) };
+        LinearizationSetup::new(&simulation.model().flat, &choice, &[]).expect_err("does not fit")[0].message.clone()
     };
     assert_eq!(said(&["v"], &[]), "`v` cannot be used here");
     assert_eq!(said(&["mm"], &[]), "the model has no variable `mm`");
@@ -156,14 +159,14 @@ const PUMP: &str = "model M
     der(w) = 3*(f - w) - (0.1 + 0.01*tanh(w))*p; der(p) = w*sqrt(1 + p^2/100) - 0.2*p*abs(w) - u*p; n = 60*w;
   end M;";
 
-fn quasi_linear(rho: &[&str]) -> Schedule {
+fn quasi_linear(rho: &[&str]) -> QuasiLpvModel {
     quasi_linear_at(rho, &vec![vec![1.0, 10.0]; rho.len()])
 }
 
-fn quasi_linear_at(rho: &[&str], grid: &[Vec<f64>]) -> Schedule {
+fn quasi_linear_at(rho: &[&str], grid: &[Vec<f64>]) -> QuasiLpvModel {
     let (simulation, state) = start(PUMP);
     let model = simulation.model();
-    let chosen = Chosen::scheduled(&model.flat, &strings(&["f", "u"]), &strings(rho)).expect("fits");
+    let chosen = LinearizationSetup::scheduled(&model.flat, &strings(&["f", "u"]), &strings(rho)).expect("fits");
     let ranges = [(-40.0, 40.0), (0.0, 20.0), (10.0, 40.0), (0.0, 3.0)];
     let grid: Vec<Option<Vec<f64>>> = grid.iter().cloned().map(Some).collect();
     schedule(&chosen, &state, &grid, &ranges).expect("has values")
@@ -210,7 +213,8 @@ fn largest_error(class: &str, stop: Option<f64>, inputs: &[&str], rho: &[&str], 
         Some(stop) => simulation.state_at(Some(stop)),
     };
     let state = state.expect("runs");
-    let chosen = Chosen::scheduled(&simulation.model().flat, &strings(inputs), &strings(rho)).expect("fits");
+    let chosen =
+        LinearizationSetup::scheduled(&simulation.model().flat, &strings(inputs), &strings(rho)).expect("fits");
     let around = chosen.quantities().map(|v| {
         let now = state.values[v.index()];
         let margin = (0.2 * now.abs()).max(least);

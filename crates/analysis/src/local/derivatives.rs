@@ -1,7 +1,7 @@
 //! Exact derivatives at a point, by the system's own Jacobian and the implicit function theorem.
 
-use super::plan::{Role, Target};
-use super::{Local, LocalError};
+use super::plan::{LocalColumnRole, LocalRowTarget};
+use super::{LocalError, LocalEvaluator};
 use nalgebra::DMatrix;
 
 /// Derivatives at a point. Columns of `b` and `d`: parameters, then inputs.
@@ -40,14 +40,14 @@ impl Linearization {
     }
 }
 
-impl Local {
+impl LocalEvaluator {
     /// Values and derivatives.
     ///
     /// # Errors
     /// [`LocalError`]; values and derivatives are then meaningless.
     pub fn linearize(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
         self.evaluate(time, x, theta, u)?;
-        let Local { plan, point, y, yp, entries, torn_entries, .. } = self;
+        let LocalEvaluator { plan, point, y, yp, entries, torn_entries, .. } = self;
         let system = &plan.system;
         system.jacobian(time, 0.0, y, yp, &mut point.values, entries).map_err(|_| LocalError::NonFinite)?;
         let torn = plan.implicit.iter().any(|i| i.1);
@@ -63,16 +63,16 @@ impl Local {
 
     /// Adds what goes through the rates that others read: r = g(x, r) has d r/d x = (1 - d g/d r)^-1 d g/d x.
     fn through_rates(&mut self) -> Result<(), LocalError> {
-        let Local { plan, entries, torn_entries, linear, through_unknowns, .. } = self;
+        let LocalEvaluator { plan, entries, torn_entries, linear, through_unknowns, .. } = self;
         let (n, p) = (plan.states.len(), plan.outputs.len());
         let mut read = DMatrix::zeros(n + p, n);
         let pattern = &plan.system.pattern;
         for (column, role) in plan.roles.iter().enumerate() {
-            let Role::State(j) = *role else { continue };
+            let LocalColumnRole::State(j) = *role else { continue };
             for k in pattern.colptr[column]..pattern.colptr[column + 1] {
                 match plan.targets[pattern.rowidx[k]] {
-                    Target::Rate(i) if i != j => read[(i, j)] = entries[k] - torn_entries[k],
-                    Target::Output(i) => read[(n + i, j)] = entries[k] - torn_entries[k],
+                    LocalRowTarget::Rate(i) if i != j => read[(i, j)] = entries[k] - torn_entries[k],
+                    LocalRowTarget::Output(i) => read[(n + i, j)] = entries[k] - torn_entries[k],
                     _ => {}
                 }
             }
@@ -93,22 +93,22 @@ impl Local {
     /// The explicit part: minus the entries of rows `der(x) - value`. What is not among them is 0 already, but for what
     /// went through implicit unknowns the last time.
     fn scatter(&mut self) {
-        let Local { plan, entries, linear, through_unknowns, .. } = self;
+        let LocalEvaluator { plan, entries, linear, through_unknowns, .. } = self;
         through_unknowns.drain(..).for_each(|(row, column)| linear.set(row, column, 0.0));
         let pattern = &plan.system.pattern;
         let n = plan.states.len();
         for (column, role) in plan.roles.iter().enumerate() {
             let (column_at, sign) = match *role {
-                Role::State(j) => (j, -1.0),
-                Role::Raised(j) if plan.raised[j].negated => (n + j, 1.0),
-                Role::Raised(j) => (n + j, -1.0),
+                LocalColumnRole::State(j) => (j, -1.0),
+                LocalColumnRole::Raised(j) if plan.raised[j].negated => (n + j, 1.0),
+                LocalColumnRole::Raised(j) => (n + j, -1.0),
                 _ => continue,
             };
             for k in pattern.colptr[column]..pattern.colptr[column + 1] {
                 match plan.targets[pattern.rowidx[k]] {
-                    Target::Rate(i) => linear.set(i, column_at, sign * entries[k]),
-                    Target::Output(i) => linear.set(n + i, column_at, sign * entries[k]),
-                    Target::Other => {}
+                    LocalRowTarget::Rate(i) => linear.set(i, column_at, sign * entries[k]),
+                    LocalRowTarget::Output(i) => linear.set(n + i, column_at, sign * entries[k]),
+                    LocalRowTarget::Other => {}
                 }
             }
         }
@@ -116,7 +116,7 @@ impl Local {
 
     /// Adds what goes through the implicit unknowns.
     fn eliminate(&mut self, torn: bool) -> Result<(), LocalError> {
-        let Local { plan, entries, torn_entries, linear, through_unknowns, .. } = self;
+        let LocalEvaluator { plan, entries, torn_entries, linear, through_unknowns, .. } = self;
         let (n, p, q) = (plan.states.len(), plan.outputs.len(), plan.implicit.len());
         let rows = &plan.implicit_row;
         let mut unknown = DMatrix::zeros(q, q);
@@ -131,17 +131,17 @@ impl Local {
                 let row = pattern.rowidx[k];
                 let value = entries[k];
                 let target = match plan.targets[row] {
-                    Target::Rate(i) => Some(i),
-                    Target::Output(i) => Some(n + i),
-                    Target::Other => None,
+                    LocalRowTarget::Rate(i) => Some(i),
+                    LocalRowTarget::Output(i) => Some(n + i),
+                    LocalRowTarget::Other => None,
                 };
                 match (rows[row], plan.roles[column]) {
-                    (Some(i), Role::State(j)) => known[(i, plan.reached_place[j])] = value,
-                    (Some(i), Role::Raised(j)) => {
+                    (Some(i), LocalColumnRole::State(j)) => known[(i, plan.reached_place[j])] = value,
+                    (Some(i), LocalColumnRole::Raised(j)) => {
                         known[(i, plan.reached_place[n + j])] = if plan.raised[j].negated { -value } else { value };
                     }
-                    (Some(i), Role::Implicit(j)) => unknown[(i, j)] = value,
-                    (None, Role::Implicit(j)) => {
+                    (Some(i), LocalColumnRole::Implicit(j)) => unknown[(i, j)] = value,
+                    (None, LocalColumnRole::Implicit(j)) => {
                         if let Some(t) = target {
                             through[(t, j)] = -value;
                         }
@@ -170,7 +170,7 @@ impl Local {
             }
         }
         for (i, &(column, torn)) in plan.implicit.iter().enumerate() {
-            if torn && let Role::State(k) = plan.roles[column] {
+            if torn && let LocalColumnRole::State(k) = plan.roles[column] {
                 for (place, &j) in plan.reached.iter().enumerate() {
                     finite &= solution[(i, place)].is_finite();
                     linear.set(k, j, -solution[(i, place)]);

@@ -1,7 +1,7 @@
 //! Implicit unknowns by Newton's method, rates that read each other.
 
 use super::LocalError;
-use super::plan::Plan;
+use super::plan::EvaluationPlan;
 use nalgebra::{DMatrix, DVector};
 
 /// Iterations of Newton's method on the implicit unknowns.
@@ -9,7 +9,7 @@ const NEWTON: usize = 12;
 /// Residuals and corrections are rounding below this part of what they began with.
 const CONVERGED: f64 = 1e-11;
 
-impl Plan {
+impl EvaluationPlan {
     /// Solves for the implicit unknowns from their last values, and for all rates; false where that does not converge.
     pub(super) fn newton(
         &self,

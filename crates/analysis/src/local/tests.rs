@@ -7,17 +7,17 @@ fn id(flat: &FlatModel, name: &str) -> VarId {
     VarId(u32::try_from(i).expect("small"))
 }
 
-fn local(text: &str, parameters: &[&str], outputs: &[&str], u: &[f64]) -> Local {
+fn local(text: &str, parameters: &[&str], outputs: &[&str], u: &[f64]) -> LocalEvaluator {
     let flat = bramah_model::compile::flatten_text(text, None).value.expect("sound").flat;
     let ids = |names: &[&str]| names.iter().map(|n| id(&flat, n)).collect::<Vec<_>>();
     let lifted = lift(&flat, &ids(parameters), &ids(outputs));
-    let plan = Arc::new(Plan::new(&lifted).expect("can be sorted"));
+    let plan = Arc::new(EvaluationPlan::new(&lifted).expect("can be sorted"));
     let theta = plan.parameter_values();
-    Local::start(plan, 0.0, &theta, u).expect("starts")
+    LocalEvaluator::start(plan, 0.0, &theta, u).expect("starts")
 }
 
 /// Derivatives against central differences of the values.
-fn check(local: &mut Local, x: &[f64], theta: &[f64], u: &[f64]) {
+fn check(local: &mut LocalEvaluator, x: &[f64], theta: &[f64], u: &[f64]) {
     local.linearize(0.3, x, theta, u).expect("has derivatives");
     let linear = local.linear.clone();
     let all: Vec<f64> = x.iter().chain(theta).chain(u).copied().collect();
@@ -105,7 +105,7 @@ fn rates_do_not_remember_where_the_model_was_before() {
         der(x) = u - k*x^3; y = k*x^2;
       end M;";
     let mut local = local(text, &["k"], &["y"], &[0.7]);
-    let at = |local: &mut Local, x: f64| {
+    let at = |local: &mut LocalEvaluator, x: f64| {
         local.evaluate(0.0, &[x], &[3.0], &[0.7]).expect("has values");
         (local.rates[0], local.outputs[0])
     };

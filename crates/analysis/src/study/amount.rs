@@ -1,6 +1,6 @@
 //! Amounts as data sheets state them: `3 %`, `0.5 bar`, or a plain number.
 
-use bramah_expr::units::{Unit, quantity};
+use bramah_expr::units::{MeasurementUnit, quantity};
 use bramah_results::number;
 use std::fmt;
 
@@ -73,8 +73,8 @@ impl Amount {
 }
 
 fn convert(own: &str, unit: &str, value: f64, difference: bool) -> Result<f64, String> {
-    let from = Unit::parse(own).map_err(|e| e.to_string())?.meant(difference);
-    let to = Unit::parse(unit).map_err(|e| e.to_string())?.meant(difference);
+    let from = MeasurementUnit::parse(own).map_err(|e| e.to_string())?.meant(difference);
+    let to = MeasurementUnit::parse(unit).map_err(|e| e.to_string())?.meant(difference);
     from.convert(value, &to).ok_or_else(|| {
         let unit = if unit.is_empty() { "a pure number" } else { unit };
         format!("`{own}` cannot be converted to {unit}")

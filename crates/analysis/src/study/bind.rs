@@ -3,15 +3,15 @@
 use super::table::at;
 use super::{Amount, InputColumn, ParameterEntry, RecordingFile, SignalColumn, Study};
 use bramah_expr::VarId;
-use bramah_expr::units::Unit;
-use bramah_model::flat::{FlatModel, Type, Variability, Variable};
+use bramah_expr::units::MeasurementUnit;
+use bramah_model::flat::{FlatModel, FlatVariable, ScalarType, Variability};
 use bramah_solve::Interpolation;
-use bramah_syntax::diag::{Checked, Code, Diagnostic, Span, nearest};
+use bramah_syntax::diag::{Code, Diagnostic, Span, StageResult, nearest};
 use std::path::PathBuf;
 
 /// A study whose names are variables of a model.
 #[derive(Clone, Debug)]
-pub struct Bound {
+pub struct BoundStudy {
     /// The driven inputs.
     pub inputs: Vec<BoundInput>,
     /// The measured signals.
@@ -72,7 +72,7 @@ impl BoundSignal {
 
 /// What a data sheet says about a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Knowledge {
+pub enum DataSheetTolerance {
     /// It is never moved.
     Exact,
     /// One standard deviation as part of the value; log-normal where the value is positive.
@@ -93,7 +93,7 @@ pub struct BoundParameter {
     /// Its unit; empty where it has none.
     pub unit: String,
     /// How well it is known.
-    pub knowledge: Knowledge,
+    pub knowledge: DataSheetTolerance,
     /// Lower bound in its unit.
     pub min: Option<f64>,
     /// Upper bound in its unit.
@@ -108,9 +108,9 @@ impl Study {
     /// # Errors
     /// [`Code::BadStudy`]: names that the model does not have, units that cannot be converted, parameters that cannot
     /// be moved, bounds in the wrong order, inputs without a column or value.
-    pub fn bind(&self, model: &FlatModel) -> Checked<Bound> {
-        let mut binder = Binder { model, diagnostics: Vec::new() };
-        let bound = Bound {
+    pub fn bind(&self, model: &FlatModel) -> StageResult<BoundStudy> {
+        let mut binder = StudyBinder { model, diagnostics: Vec::new() };
+        let bound = BoundStudy {
             inputs: self.inputs.iter().filter_map(|i| binder.input(i)).collect(),
             signals: self.signals.iter().filter_map(|s| binder.signal(s)).collect(),
             parameters: self.parameters.iter().filter_map(|p| binder.parameter(p)).collect(),
@@ -119,19 +119,19 @@ impl Study {
         };
         binder.check_inputs(self, &bound);
         if binder.diagnostics.is_empty() {
-            Checked::new(bound, Vec::new())
+            StageResult::new(bound, Vec::new())
         } else {
-            Checked::failed(binder.diagnostics)
+            StageResult::failed(binder.diagnostics)
         }
     }
 }
 
-struct Binder<'a> {
+struct StudyBinder<'a> {
     model: &'a FlatModel,
     diagnostics: Vec<Diagnostic>,
 }
 
-impl<'a> Binder<'a> {
+impl<'a> StudyBinder<'a> {
     fn report(&mut self, span: Span, message: impl Into<String>, label: impl Into<String>) {
         self.diagnostics.push(at(span, message, label));
     }
@@ -142,8 +142,8 @@ impl<'a> Binder<'a> {
         span: Span,
         what: &str,
         name: &str,
-        fits: fn(&Variable) -> bool,
-    ) -> Option<(VarId, &'a Variable)> {
+        fits: fn(&FlatVariable) -> bool,
+    ) -> Option<(VarId, &'a FlatVariable)> {
         let variables = &self.model.variables;
         if let Some(i) = variables.iter().position(|v| v.name == name) {
             let id = VarId(u32::try_from(i).expect("fewer than 2^32 variables"));
@@ -168,14 +168,14 @@ impl<'a> Binder<'a> {
         }
         let unit = v.unit.as_deref().unwrap_or("").to_owned();
         self.check_unit(entry.span, entry.unit.as_deref(), &unit, &entry.name)?;
-        let held = entry.hold || v.ty != Type::Real;
+        let held = entry.hold || v.ty != ScalarType::Real;
         let interpolation = if held { Interpolation::Held } else { Interpolation::Linear };
         let (name, difference) = (entry.name.clone(), v.difference);
         Some(BoundInput { variable, name, unit, difference, interpolation, entry: entry.clone() })
     }
 
     fn signal(&mut self, entry: &SignalColumn) -> Option<BoundSignal> {
-        let varies = |v: &Variable| v.variability > Variability::Parameter;
+        let varies = |v: &FlatVariable| v.variability > Variability::Parameter;
         let (variable, v) = self.find(entry.span, "variable", &entry.variable, varies)?;
         if !varies(v) {
             self.report(entry.span, format!("`{}` does not change during a run", entry.variable), "a parameter");
@@ -223,10 +223,10 @@ impl<'a> Binder<'a> {
     }
 
     fn parameter(&mut self, entry: &ParameterEntry) -> Option<BoundParameter> {
-        let parameter = |v: &Variable| v.variability == Variability::Parameter;
+        let parameter = |v: &FlatVariable| v.variability == Variability::Parameter;
         let (variable, v) = self.find(entry.span, "parameter", &entry.name, parameter)?;
         match v.variability {
-            Variability::Parameter if v.ty == Type::Real => {}
+            Variability::Parameter if v.ty == ScalarType::Real => {}
             Variability::Parameter => {
                 self.report(entry.span, format!("`{}` is not a real number", entry.name), "cannot be varied smoothly");
                 return None;
@@ -250,10 +250,10 @@ impl<'a> Binder<'a> {
             self.report(entry.span, format!("`min` of `{}` does not lie below its `max`", entry.name), "here");
         }
         let knowledge = match &entry.sigma {
-            _ if entry.exact => Knowledge::Exact,
-            Some(Amount::Part(part)) => Knowledge::Relative(*part),
-            None => Knowledge::Free,
-            absolute => Knowledge::Absolute(self.amount(entry.span, absolute.as_ref(), &unit, None)?),
+            _ if entry.exact => DataSheetTolerance::Exact,
+            Some(Amount::Part(part)) => DataSheetTolerance::Relative(*part),
+            None => DataSheetTolerance::Free,
+            absolute => DataSheetTolerance::Absolute(self.amount(entry.span, absolute.as_ref(), &unit, None)?),
         };
         Some(BoundParameter { variable, name: entry.name.clone(), unit, knowledge, min, max, span: entry.span })
     }
@@ -265,7 +265,7 @@ impl<'a> Binder<'a> {
     }
 
     /// Every input of the model has a column or a value of its own, and only one.
-    fn check_inputs(&mut self, study: &Study, bound: &Bound) {
+    fn check_inputs(&mut self, study: &Study, bound: &BoundStudy) {
         for (i, v) in (0u32..).zip(&self.model.variables) {
             let driven = bound.inputs.iter().any(|b| b.variable == VarId(i));
             let named = study.inputs.iter().any(|e| e.name == v.name);
@@ -279,10 +279,10 @@ impl<'a> Binder<'a> {
 }
 
 /// How values in a unit become values in another; `None` where they stay as they are.
-pub(super) fn conversion(from: &str, to: &str) -> Result<Option<(Unit, Unit)>, ()> {
+pub(super) fn conversion(from: &str, to: &str) -> Result<Option<(MeasurementUnit, MeasurementUnit)>, ()> {
     if from.is_empty() || to.is_empty() || from == to {
         return Ok(None);
     }
-    let (from, to) = (Unit::parse(from).map_err(|_| ())?, Unit::parse(to).map_err(|_| ())?);
+    let (from, to) = (MeasurementUnit::parse(from).map_err(|_| ())?, MeasurementUnit::parse(to).map_err(|_| ())?);
     if from.convert(0.0, &to).is_some() { Ok(Some((from, to))) } else { Err(()) }
 }

@@ -1,11 +1,11 @@
 //! Recordings read, checked and converted to the units of the model.
 
-use super::bind::{Bound, conversion};
+use super::bind::{BoundStudy, conversion};
 use super::table::at;
-use super::{InputColumn, RecordingFile, Role};
-use bramah_results::{Strictness, Trajectory, contradiction, number, read_csv};
+use super::{InputColumn, RecordingFile, RecordingRole};
+use bramah_results::{ReadStrictness, Trajectory, contradiction, number, read_csv};
 use bramah_solve::Interpolation;
-use bramah_syntax::diag::{Checked, Code, Diagnostic, Sources, Span};
+use bramah_syntax::diag::{Code, Diagnostic, Sources, Span, StageResult};
 use bramah_syntax::world::World;
 use std::path::Path;
 
@@ -15,19 +15,19 @@ pub struct Recording {
     /// The file as the study names it.
     pub file: String,
     /// What it is for.
-    pub role: Role,
+    pub role: RecordingRole,
     /// Times of the samples in seconds, growing.
     pub times: Vec<f64>,
-    /// One column an entry of [`Bound::inputs`], each as long as `times`, without NaN.
+    /// One column an entry of [`BoundStudy::inputs`], each as long as `times`, without NaN.
     pub inputs: Vec<Vec<f64>>,
-    /// One column an entry of [`Bound::signals`], each as long as `times`, with the sign applied. NaN where nothing
+    /// One column an entry of [`BoundStudy::signals`], each as long as `times`, with the sign applied. NaN where nothing
     /// was measured.
     pub signals: Vec<Vec<f64>>,
     /// Into how many pieces a run along it is cut; 1 for none.
     pub pieces: usize,
 }
 
-impl Bound {
+impl BoundStudy {
     /// Reads the recordings of one role. File names are taken relative to `data`, or to the folder of the study.
     ///
     /// Texts are added to `sources`. Optional recordings that do not exist are left out.
@@ -41,43 +41,43 @@ impl Bound {
         &self,
         world: &dyn World,
         data: Option<&Path>,
-        role: Role,
+        role: RecordingRole,
         sources: &mut Sources,
-    ) -> Checked<Vec<Recording>> {
-        let mut loader = Loader { bound: self, role, sources, diagnostics: Vec::new() };
+    ) -> StageResult<Vec<Recording>> {
+        let mut loader = RecordingLoader { bound: self, role, sources, diagnostics: Vec::new() };
         let mut found = Vec::new();
         for file in self.recordings.iter().filter(|r| r.role == role) {
             let path = data.unwrap_or(&self.folder).join(&file.file);
             found.extend(loader.recording(world, file, &path));
         }
-        if found.is_empty() && role == Role::Train && loader.diagnostics.is_empty() {
+        if found.is_empty() && role == RecordingRole::Train && loader.diagnostics.is_empty() {
             let d = Diagnostic::new(Code::BadStudy, "there is no recording to fit to");
             loader.diagnostics.push(d.help("give at least one existing recording the role `train`"));
         }
-        if role == Role::Train {
+        if role == RecordingRole::Train {
             loader.check_excitation(&found);
         }
         if loader.diagnostics.iter().any(Diagnostic::is_error) {
-            Checked::failed(loader.diagnostics)
+            StageResult::failed(loader.diagnostics)
         } else {
-            Checked::new(found, loader.diagnostics)
+            StageResult::new(found, loader.diagnostics)
         }
     }
 
     /// True where the study has recordings of this role.
-    pub fn has(&self, role: Role) -> bool {
+    pub fn has(&self, role: RecordingRole) -> bool {
         self.recordings.iter().any(|r| r.role == role)
     }
 
     /// The files of the study and their roles, in its order.
-    pub fn files(&self) -> impl Iterator<Item = (&str, Role)> {
+    pub fn files(&self) -> impl Iterator<Item = (&str, RecordingRole)> {
         self.recordings.iter().map(|r| (r.file.as_str(), r.role))
     }
 }
 
 /// The sensors' ranges in the units of the variables: as the study says, or peak to peak over `train`; of a signal that
 /// stands still its size.
-pub fn full_scales(bound: &Bound, train: &[Recording]) -> Vec<f64> {
+pub fn full_scales(bound: &BoundStudy, train: &[Recording]) -> Vec<f64> {
     let range = |k: usize| {
         let values = || train.iter().flat_map(|r| r.signals[k].iter().copied()).filter(|v| !v.is_nan());
         let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
@@ -96,14 +96,14 @@ const LARGEST: f64 = 1e100;
 /// From so many jumps on an input is taken for one that steps.
 const MANY_JUMPS: usize = 4;
 
-struct Loader<'a> {
-    bound: &'a Bound,
-    role: Role,
+struct RecordingLoader<'a> {
+    bound: &'a BoundStudy,
+    role: RecordingRole,
     sources: &'a mut Sources,
     diagnostics: Vec<Diagnostic>,
 }
 
-impl Loader<'_> {
+impl RecordingLoader<'_> {
     fn recording(&mut self, world: &dyn World, file: &RecordingFile, path: &Path) -> Option<Recording> {
         let text = match world.read(path) {
             Ok(text) => text,
@@ -119,7 +119,7 @@ impl Loader<'_> {
         let head = Span { file: id, start: 0, end: 0 };
         let inputs: Vec<String> = self.bound.inputs.iter().map(|i| i.entry.column.clone()).collect();
         let outputs: Vec<String> = self.bound.signals.iter().map(|s| s.entry.column.clone()).collect();
-        let strictness = Strictness::Recording { inputs: &inputs, outputs: &outputs };
+        let strictness = ReadStrictness::Recording { inputs: &inputs, outputs: &outputs };
         let mut table = read_csv(self.sources, id, file.time.as_deref(), strictness).sink(&mut self.diagnostics)?;
         if let Some((from, to)) = file.window {
             table.keep(from..=to);

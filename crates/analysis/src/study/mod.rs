@@ -1,7 +1,7 @@
 //! Studies: a model, recordings of its bench and what is known about its parameters, as TOML.
 //!
 //! `identify` and `gap` read the same file. [`parse`] makes a [`Study`] of a text; [`Study::bind`] ties its names to
-//! the variables of a compiled model; [`Bound::load`] reads the recordings of one role, so that held ones may be read
+//! the variables of a compiled model; [`BoundStudy::load`] reads the recordings of one role, so that held ones may be read
 //! last. The reference of the file is `docs/study.md`.
 
 mod amount;
@@ -11,11 +11,11 @@ mod reader;
 mod table;
 
 pub use amount::Amount;
-pub use bind::{Bound, BoundInput, BoundParameter, BoundSignal, Knowledge};
+pub use bind::{BoundInput, BoundParameter, BoundSignal, BoundStudy, DataSheetTolerance};
 pub use load::{Recording, full_scales};
 pub use table::parse;
 
-use bramah_syntax::diag::{Checked, Code, Diagnostic, Sources, Span};
+use bramah_syntax::diag::{Code, Diagnostic, Sources, Span, StageResult};
 use bramah_syntax::world::World;
 use std::path::{Path, PathBuf};
 
@@ -80,7 +80,7 @@ pub struct SignalColumn {
 
 /// What a recording is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Role {
+pub enum RecordingRole {
     /// Selection and fitting.
     Train,
     /// Judging the result; never used before.
@@ -93,7 +93,7 @@ pub struct RecordingFile {
     /// The file as written.
     pub file: String,
     /// What it is for.
-    pub role: Role,
+    pub role: RecordingRole,
     /// The time column, where the study says it.
     pub time: Option<String>,
     /// First and last time to use, in seconds of the recording.
@@ -141,7 +141,7 @@ impl Study {
     ///
     /// # Errors
     /// [`Code::FileAccess`] where it cannot be read, else as [`parse`].
-    pub fn read(world: &dyn World, path: &Path, sources: &mut Sources) -> Checked<Study> {
+    pub fn read(world: &dyn World, path: &Path, sources: &mut Sources) -> StageResult<Study> {
         match world.read(path) {
             Ok(text) => {
                 let file = sources.add(path.display().to_string(), text);
@@ -149,7 +149,7 @@ impl Study {
             }
             Err(why) => {
                 let text = format!("`{}` cannot be read: {why}", path.display());
-                Checked::failed(vec![Diagnostic::new(Code::FileAccess, text)])
+                StageResult::failed(vec![Diagnostic::new(Code::FileAccess, text)])
             }
         }
     }
@@ -170,7 +170,7 @@ impl Study {
     }
 
     /// The recordings of one role.
-    pub fn of_role(&self, role: Role) -> impl Iterator<Item = &RecordingFile> {
+    pub fn of_role(&self, role: RecordingRole) -> impl Iterator<Item = &RecordingFile> {
         self.recordings.iter().filter(move |r| r.role == role)
     }
 }

@@ -8,19 +8,19 @@ use toml::de::{DeTable, DeValue};
 use bramah_syntax::diag::{Code, Diagnostic, FileId, Span, nearest};
 
 /// A value that knows its place.
-pub(super) type Value<'a> = Spanned<DeValue<'a>>;
+pub(super) type StudyValue<'a> = Spanned<DeValue<'a>>;
 
 /// Reads values and collects what is wrong with them.
-pub(super) struct Reader {
+pub(super) struct StudyReader {
     file: FileId,
     /// The mistakes found so far.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-impl Reader {
+impl StudyReader {
     /// For the text `file`.
     pub fn new(file: FileId) -> Self {
-        Reader { file, diagnostics: Vec::new() }
+        StudyReader { file, diagnostics: Vec::new() }
     }
 
     /// A stretch of the text.
@@ -40,7 +40,7 @@ impl Reader {
     }
 
     /// A value of another type than expected.
-    pub fn wrong_kind(&mut self, key: &str, value: &Value<'_>, expected: &str) {
+    pub fn wrong_kind(&mut self, key: &str, value: &StudyValue<'_>, expected: &str) {
         let found = value.get_ref().type_str();
         self.report(&value.span(), format!("`{key}` is {expected}"), format!("this is a value of type {found}"));
     }
@@ -61,7 +61,7 @@ impl Reader {
     }
 
     /// A text in quotes.
-    pub fn text(&mut self, key: &str, value: &Value<'_>) -> Option<String> {
+    pub fn text(&mut self, key: &str, value: &StudyValue<'_>) -> Option<String> {
         let text = value.get_ref().as_str().map(str::to_owned);
         if text.is_none() {
             self.wrong_kind(key, value, "a text in quotes");
@@ -70,7 +70,7 @@ impl Reader {
     }
 
     /// `true` or `false`.
-    pub fn truth(&mut self, key: &str, value: &Value<'_>) -> Option<bool> {
+    pub fn truth(&mut self, key: &str, value: &StudyValue<'_>) -> Option<bool> {
         let truth = value.get_ref().as_bool();
         if truth.is_none() {
             self.wrong_kind(key, value, "true or false");
@@ -79,7 +79,7 @@ impl Reader {
     }
 
     /// A finite number.
-    pub fn number(&mut self, key: &str, value: &Value<'_>) -> Option<f64> {
+    pub fn number(&mut self, key: &str, value: &StudyValue<'_>) -> Option<f64> {
         let number = number(value.get_ref()).filter(|x| x.is_finite());
         if number.is_none() {
             self.wrong_kind(key, value, "a number");
@@ -88,7 +88,7 @@ impl Reader {
     }
 
     /// A list of texts.
-    pub fn list(&mut self, key: &str, value: &Value<'_>) -> Vec<String> {
+    pub fn list(&mut self, key: &str, value: &StudyValue<'_>) -> Vec<String> {
         let DeValue::Array(items) = value.get_ref() else {
             self.wrong_kind(key, value, "a list of texts");
             return Vec::new();
@@ -97,7 +97,7 @@ impl Reader {
     }
 
     /// A table.
-    pub fn table<'v, 'a>(&mut self, key: &str, value: &'v Value<'a>) -> Option<&'v DeTable<'a>> {
+    pub fn table<'v, 'a>(&mut self, key: &str, value: &'v StudyValue<'a>) -> Option<&'v DeTable<'a>> {
         let table = value.get_ref().as_table();
         if table.is_none() {
             self.wrong_kind(key, value, "a table");
@@ -107,7 +107,7 @@ impl Reader {
 
     /// The entries of a table whose keys are dotted names: `a.b = 1` arrives as a table in a table. A table is an entry
     /// of its own when it holds anything but tables.
-    pub fn named<'v, 'a>(&mut self, key: &str, value: &'v Value<'a>) -> Vec<Named<'v, 'a>> {
+    pub fn named<'v, 'a>(&mut self, key: &str, value: &'v StudyValue<'a>) -> Vec<StudyEntry<'v, 'a>> {
         let mut found = Vec::new();
         if let Some(table) = self.table(key, value) {
             self.collect("", table, &mut found);
@@ -115,7 +115,7 @@ impl Reader {
         found
     }
 
-    fn collect<'v, 'a>(&self, prefix: &str, table: &'v DeTable<'a>, found: &mut Vec<Named<'v, 'a>>) {
+    fn collect<'v, 'a>(&self, prefix: &str, table: &'v DeTable<'a>, found: &mut Vec<StudyEntry<'v, 'a>>) {
         for (key, value) in table {
             let name =
                 if prefix.is_empty() { key.get_ref().to_string() } else { format!("{prefix}.{}", key.get_ref()) };
@@ -123,20 +123,20 @@ impl Reader {
                 Some(inner) if !inner.is_empty() && inner.iter().all(|(_, v)| v.get_ref().is_table()) => {
                     self.collect(&name, inner, found);
                 }
-                _ => found.push(Named { name, span: self.span(&key.span()), value }),
+                _ => found.push(StudyEntry { name, span: self.span(&key.span()), value }),
             }
         }
     }
 }
 
 /// An entry of a table with its dotted name.
-pub(super) struct Named<'v, 'a> {
+pub(super) struct StudyEntry<'v, 'a> {
     /// The dotted name.
     pub name: String,
     /// Where the name stands.
     pub span: Span,
     /// What it is set to.
-    pub value: &'v Value<'a>,
+    pub value: &'v StudyValue<'a>,
 }
 
 /// The number that a TOML value is.

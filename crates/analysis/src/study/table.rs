@@ -4,9 +4,9 @@ use std::path::Path;
 
 use toml::de::{DeTable, DeValue};
 
-use super::reader::{Named, Reader, Value, number};
-use super::{Amount, EffectChoice, InputColumn, ParameterEntry, RecordingFile, Role, SignalColumn, Study};
-use bramah_syntax::diag::{Checked, Code, Diagnostic, FileId, Sources, Span};
+use super::reader::{StudyEntry, StudyReader, StudyValue, number};
+use super::{Amount, EffectChoice, InputColumn, ParameterEntry, RecordingFile, RecordingRole, SignalColumn, Study};
+use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources, Span, StageResult};
 
 const KEYS: &[&str] = &["version", "model", "class", "inputs", "signals", "recordings", "parameters", "effects"];
 const INPUT_KEYS: &[&str] = &["column", "unit", "hold", "kind"];
@@ -19,10 +19,11 @@ const EFFECT_KEYS: &[&str] = &["include", "exclude", "places", "folder"];
 ///
 /// # Errors
 /// [`Code::BadStudy`]: text that is not TOML, unknown keys, values of the wrong kind, nothing measured.
-pub fn parse(sources: &Sources, file: FileId) -> Checked<Study> {
+pub fn parse(sources: &Sources, file: FileId) -> StageResult<Study> {
     let source = sources.get(file);
     let (document, errors) = DeTable::parse_recoverable(&source.text);
-    let mut table = Table { reader: Reader::new(file), study: empty(Path::new(&source.path)), versioned: false };
+    let mut table =
+        StudyTable { reader: StudyReader::new(file), study: empty(Path::new(&source.path)), versioned: false };
     for error in errors {
         let message = format!("the text is not TOML: {}", error.message().lines().next().unwrap_or("unreadable"));
         table.reader.report(&error.span().unwrap_or(0..0), message, "here");
@@ -35,8 +36,12 @@ pub fn parse(sources: &Sources, file: FileId) -> Checked<Study> {
     if table.reader.diagnostics.is_empty() {
         table.check_whole();
     }
-    let Table { reader, study, .. } = table;
-    if reader.diagnostics.is_empty() { Checked::new(study, Vec::new()) } else { Checked::failed(reader.diagnostics) }
+    let StudyTable { reader, study, .. } = table;
+    if reader.diagnostics.is_empty() {
+        StageResult::new(study, Vec::new())
+    } else {
+        StageResult::failed(reader.diagnostics)
+    }
 }
 
 fn empty(path: &Path) -> Study {
@@ -52,14 +57,14 @@ fn empty(path: &Path) -> Study {
     }
 }
 
-struct Table {
-    reader: Reader,
+struct StudyTable {
+    reader: StudyReader,
     study: Study,
     versioned: bool,
 }
 
-impl Table {
-    fn entry(&mut self, key: &str, place: &std::ops::Range<usize>, value: &Value<'_>) {
+impl StudyTable {
+    fn entry(&mut self, key: &str, place: &std::ops::Range<usize>, value: &StudyValue<'_>) {
         match key {
             "version" => self.version(value),
             "model" => self.study.model = self.reader.text(key, value),
@@ -73,7 +78,7 @@ impl Table {
         }
     }
 
-    fn version(&mut self, value: &Value<'_>) {
+    fn version(&mut self, value: &StudyValue<'_>) {
         self.versioned = true;
         if number(value.get_ref()) != Some(1.0) {
             self.reader.report(&value.span(), "the version of a study is 1", "this one is not known");
@@ -100,8 +105,8 @@ impl Table {
         }
     }
 
-    fn inputs(&mut self, value: &Value<'_>) {
-        for Named { name, span, value } in self.reader.named("inputs", value) {
+    fn inputs(&mut self, value: &StudyValue<'_>) {
+        for StudyEntry { name, span, value } in self.reader.named("inputs", value) {
             let mut input = InputColumn { column: name.clone(), name, unit: None, hold: true, measured: false, span };
             self.fields(&input.name.clone(), value, INPUT_KEYS, |reader, key, value| match key {
                 "column" => input.column = reader.text(key, value).unwrap_or_default(),
@@ -113,8 +118,8 @@ impl Table {
         }
     }
 
-    fn signals(&mut self, value: &Value<'_>) {
-        for Named { name, span, value } in self.reader.named("signals", value) {
+    fn signals(&mut self, value: &StudyValue<'_>) {
+        for StudyEntry { name, span, value } in self.reader.named("signals", value) {
             let mut signal = SignalColumn {
                 variable: name.clone(),
                 column: name.clone(),
@@ -137,7 +142,7 @@ impl Table {
         }
     }
 
-    fn recordings(&mut self, value: &Value<'_>) {
+    fn recordings(&mut self, value: &StudyValue<'_>) {
         let DeValue::Array(items) = value.get_ref() else {
             self.reader.wrong_kind("recordings", value, "a list of tables: `[[recordings]]`");
             return;
@@ -147,10 +152,10 @@ impl Table {
         }
     }
 
-    fn recording(&mut self, item: &Value<'_>) {
+    fn recording(&mut self, item: &StudyValue<'_>) {
         let mut recording = RecordingFile {
             file: String::new(),
-            role: Role::Train,
+            role: RecordingRole::Train,
             time: None,
             window: None,
             optional: false,
@@ -171,14 +176,14 @@ impl Table {
         if recording.file.is_empty() && item.get_ref().is_table() {
             self.reader.report(&item.span(), "a recording without `file`", "this one");
         }
-        if recording.pieces > 1 && recording.role == Role::Held {
+        if recording.pieces > 1 && recording.role == RecordingRole::Held {
             self.reader.report(&item.span(), "a held recording is judged by one run: it has no `pieces`", "this one");
         }
         self.study.recordings.push(recording);
     }
 
-    fn parameters(&mut self, value: &Value<'_>) {
-        for Named { name, span, value } in self.reader.named("parameters", value) {
+    fn parameters(&mut self, value: &StudyValue<'_>) {
+        for StudyEntry { name, span, value } in self.reader.named("parameters", value) {
             let mut entry = ParameterEntry { name, exact: false, sigma: None, min: None, max: None, span };
             if value.get_ref().as_str() == Some("exact") {
                 entry.exact = true;
@@ -200,7 +205,7 @@ impl Table {
         }
     }
 
-    fn effects(&mut self, value: &Value<'_>) {
+    fn effects(&mut self, value: &StudyValue<'_>) {
         let mut effects = EffectChoice::default();
         self.fields("effects", value, EFFECT_KEYS, |reader, key, value| match key {
             "include" => effects.include = reader.list(key, value),
@@ -215,9 +220,9 @@ impl Table {
     fn fields(
         &mut self,
         name: &str,
-        value: &Value<'_>,
+        value: &StudyValue<'_>,
         known: &[&str],
-        mut take: impl FnMut(&mut Reader, &str, &Value<'_>),
+        mut take: impl FnMut(&mut StudyReader, &str, &StudyValue<'_>),
     ) {
         let Some(table) = self.reader.table(name, value) else { return };
         for (key, value) in table {
@@ -230,9 +235,9 @@ impl Table {
     }
 }
 
-fn unit(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<String> {
+fn unit(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<String> {
     let text = reader.text(key, value)?;
-    match bramah_expr::units::Unit::parse(&text) {
+    match bramah_expr::units::MeasurementUnit::parse(&text) {
         Ok(_) => Some(text),
         Err(why) => {
             reader.report(&value.span(), why.to_string(), "this unit");
@@ -241,7 +246,7 @@ fn unit(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<String> {
     }
 }
 
-fn sign(reader: &mut Reader, key: &str, value: &Value<'_>) -> f64 {
+fn sign(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> f64 {
     match number(value.get_ref()) {
         Some(x) if x.abs() == 1.0 => x,
         _ => {
@@ -251,7 +256,7 @@ fn sign(reader: &mut Reader, key: &str, value: &Value<'_>) -> f64 {
     }
 }
 
-fn is_measured(reader: &mut Reader, key: &str, value: &Value<'_>) -> bool {
+fn is_measured(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> bool {
     match value.get_ref().as_str() {
         Some("command") => false,
         Some("measured") => true,
@@ -262,18 +267,18 @@ fn is_measured(reader: &mut Reader, key: &str, value: &Value<'_>) -> bool {
     }
 }
 
-fn role(reader: &mut Reader, key: &str, value: &Value<'_>) -> Role {
+fn role(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> RecordingRole {
     match value.get_ref().as_str() {
-        Some("train") => Role::Train,
-        Some("held") => Role::Held,
+        Some("train") => RecordingRole::Train,
+        Some("held") => RecordingRole::Held,
         _ => {
             reader.report(&value.span(), format!("`{key}` is `\"train\"` or `\"held\"`"), "this is neither");
-            Role::Train
+            RecordingRole::Train
         }
     }
 }
 
-fn window(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<(f64, f64)> {
+fn window(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<(f64, f64)> {
     let ends: Option<Vec<f64>> =
         value.get_ref().as_array().and_then(|a| a.iter().map(|v| number(v.get_ref())).collect());
     match ends.as_deref() {
@@ -285,7 +290,7 @@ fn window(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<(f64, f64
     }
 }
 
-fn pieces(reader: &mut Reader, key: &str, value: &Value<'_>) -> usize {
+fn pieces(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> usize {
     match number(value.get_ref()) {
         Some(x) if (1.0..=1000.0).contains(&x) && x.fract() == 0.0 => x as usize,
         _ => {
@@ -295,14 +300,14 @@ fn pieces(reader: &mut Reader, key: &str, value: &Value<'_>) -> usize {
     }
 }
 
-fn amount(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<Amount> {
+fn amount(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<Amount> {
     if let Some(text) = value.get_ref().as_str() {
         return Amount::parse(text).map_err(|why| reader.report(&value.span(), why, format!("value of `{key}`"))).ok();
     }
     reader.number(key, value).map(|x| Amount::Value(x, None))
 }
 
-fn positive(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<Amount> {
+fn positive(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<Amount> {
     let amount = amount(reader, key, value)?;
     if amount.number() > 0.0 {
         return Some(amount);
@@ -311,7 +316,7 @@ fn positive(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<Amount>
     None
 }
 
-fn bound(reader: &mut Reader, key: &str, value: &Value<'_>) -> Option<Amount> {
+fn bound(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<Amount> {
     let amount = amount(reader, key, value)?;
     if matches!(amount, Amount::Part(_)) {
         reader.report(&value.span(), format!("`{key}` is a value, not a part"), "a percentage");

@@ -49,14 +49,14 @@ fn world(study: &str) -> MemoryWorld {
 }
 
 /// Reads, binds and loads the training recordings; hands out what was made and what was said.
-fn load(world: &MemoryWorld) -> (Option<(Bound, Vec<Recording>)>, String) {
+fn load(world: &MemoryWorld) -> (Option<(BoundStudy, Vec<Recording>)>, String) {
     let mut sources = Sources::default();
     let mut said = Vec::new();
     let made = (|| {
         let study = Study::read(world, Path::new("lab/study.toml"), &mut sources).sink(&mut said)?;
         let flat = bramah_model::compile::flatten(world, &study.request()).value.expect("the model is right").flat;
         let bound = study.bind(&flat).sink(&mut said)?;
-        let recordings = bound.load(world, None, Role::Train, &mut sources).sink(&mut said)?;
+        let recordings = bound.load(world, None, RecordingRole::Train, &mut sources).sink(&mut said)?;
         Some((bound, recordings))
     })();
     (made, short_list(&sources, &said))
@@ -78,8 +78,8 @@ fn a_study_becomes_recordings_in_the_units_of_the_model() {
     assert_eq!(full_scales(&bound, &recordings), [2e5]);
     assert_eq!(bound.signals[0].deviation(2e5), Some(1e3));
     let a = &bound.parameters[0];
-    assert_eq!((a.knowledge, a.min, a.max), (Knowledge::Relative(0.03), Some(0.1), None));
-    assert_eq!(bound.parameters[1].knowledge, Knowledge::Exact);
+    assert_eq!((a.knowledge, a.min, a.max), (DataSheetTolerance::Relative(0.03), Some(0.1), None));
+    assert_eq!(bound.parameters[1].knowledge, DataSheetTolerance::Exact);
 }
 
 /// A sensor that stands still has its size for a range, so that errors have a measure.
@@ -99,8 +99,9 @@ fn the_range_of_a_signal_that_stands_still() {
 fn held_recordings_are_read_only_when_asked_for() {
     let mut world = world(STUDY);
     let bound = load(&world).0.unwrap().0;
-    let held = |world: &MemoryWorld| bound.load(world, Some(Path::new("lab")), Role::Held, &mut Sources::default());
-    assert!(bound.has(Role::Held) && held(&world).value.is_none());
+    let held =
+        |world: &MemoryWorld| bound.load(world, Some(Path::new("lab")), RecordingRole::Held, &mut Sources::default());
+    assert!(bound.has(RecordingRole::Held) && held(&world).value.is_none());
     world.add("lab/b.csv", "t,q,level\n0,1,2\n1,1,3\n");
     assert_eq!(held(&world).value.unwrap()[0].signals[0], [-2e5, -3e5]);
 }

@@ -7,16 +7,16 @@ mod sobol;
 mod table;
 
 pub use picture::{matrix, scatter};
-pub use result::Expression;
-pub use sampling::{Random, Varied, quantile, samples};
-pub use sobol::{Index, indices};
-pub use table::{Table, fingerprint};
+pub use result::ResultExpression;
+pub use sampling::{SweepParameter, XorshiftGenerator, quantile, samples};
+pub use sobol::{SobolIndex, indices};
+pub use table::{SweepTable, fingerprint};
 
 use super::linear::outputs;
-use crate::experiment::Sweep;
+use crate::experiment::ParameterSweep;
 use bramah_circuit::compiled::CompiledModel;
 use bramah_expr::VarId;
-use bramah_model::flat::{Type, Variability};
+use bramah_model::flat::{ScalarType, Variability};
 use bramah_model::structure::StateChoice;
 use bramah_results::Trajectory;
 use bramah_solve::{Control, Settings, signals, simulate};
@@ -25,25 +25,25 @@ use std::sync::atomic::AtomicBool;
 
 /// A sweep tied to a model.
 #[derive(Clone, Debug)]
-pub struct Plan {
+pub struct SweepPlan {
     /// The parameters.
-    pub varied: Vec<Varied>,
+    pub varied: Vec<SweepParameter>,
     variables: Vec<VarId>,
     /// The values of all runs, one row a run.
     pub samples: Vec<Vec<f64>>,
     /// Names and expressions of the results.
-    pub results: Vec<(String, Expression)>,
+    pub results: Vec<(String, ResultExpression)>,
     /// The variables that the results read.
     pub wanted: Vec<VarId>,
 }
 
-impl Plan {
+impl SweepPlan {
     /// Ties a sweep to a model.
     ///
     /// # Errors
     /// [`Code::BadExperiment`]: names that the model does not have, parameters on which its structure depends, values that
     /// do not fit, expressions that cannot be read.
-    pub fn new(model: &CompiledModel, sweep: &Sweep) -> Result<Plan, Vec<Diagnostic>> {
+    pub fn new(model: &CompiledModel, sweep: &ParameterSweep) -> Result<SweepPlan, Vec<Diagnostic>> {
         let mut found = Vec::new();
         let mut varied = Vec::new();
         let mut variables = Vec::new();
@@ -51,7 +51,7 @@ impl Plan {
             match parameter(model, name) {
                 Ok((v, unit, value)) => {
                     variables.push(v);
-                    varied.push(Varied { name: name.clone(), unit, value, spread: spread.clone() });
+                    varied.push(SweepParameter { name: name.clone(), unit, value, spread: spread.clone() });
                 }
                 Err(d) => found.push(d),
             }
@@ -59,7 +59,7 @@ impl Plan {
         let bad = |text: String| Diagnostic::new(Code::BadExperiment, text);
         let mut results = Vec::new();
         for (name, text) in &sweep.results {
-            match Expression::parse(text) {
+            match ResultExpression::parse(text) {
                 Ok(e) => results.push((name.clone(), e)),
                 Err(why) => found.push(bad(format!("the result `{name}`: {why}"))),
             }
@@ -79,7 +79,7 @@ impl Plan {
         } else {
             Vec::new()
         };
-        if found.is_empty() { Ok(Plan { varied, variables, samples, results, wanted }) } else { Err(found) }
+        if found.is_empty() { Ok(SweepPlan { varied, variables, samples, results, wanted }) } else { Err(found) }
     }
 
     /// One run: the results in their order and the rows, or why there are none.
@@ -121,7 +121,7 @@ fn parameter(model: &CompiledModel, name: &str) -> Result<(VarId, String, f64), 
     };
     let v = &variables[i];
     match v.variability {
-        Variability::Parameter if v.ty == Type::Real || v.ty == Type::Integer => {}
+        Variability::Parameter if v.ty == ScalarType::Real || v.ty == ScalarType::Integer => {}
         Variability::Constant => {
             return Err(bad(format!("the structure of the model depends on `{name}`, so it cannot vary in a sweep")));
         }
@@ -137,7 +137,7 @@ fn parameter(model: &CompiledModel, name: &str) -> Result<(VarId, String, f64), 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::experiment::{Sampling, Spread};
+    use crate::experiment::{ParameterVariation, SamplingMethod};
     use bramah_solve::Settings;
     use bramah_syntax::world::MemoryWorld;
 
@@ -145,7 +145,7 @@ mod tests {
         let world = MemoryWorld::single("m.mo", text);
         let request =
             bramah_model::compile::Request { source: "m.mo".into(), ..bramah_model::compile::Request::default() };
-        bramah_circuit::compiled::compile(&world, &request, &bramah_solve::lower::Options::INTERPRETED)
+        bramah_circuit::compiled::compile(&world, &request, &bramah_solve::lower::LoweringOptions::INTERPRETED)
             .value
             .expect("sound")
     }
@@ -154,19 +154,19 @@ mod tests {
         Real x(start = 1, fixed = true); equation a = fill(x, n); der(x) = -k*x;
         assert(k < 5, \"too fast\"); end M;";
 
-    fn sweep(name: &str, values: &str, result: &str) -> Sweep {
-        Sweep {
-            method: Sampling::Grid,
-            parameters: vec![(name.into(), Spread::Values(values.into()))],
+    fn sweep(name: &str, values: &str, result: &str) -> ParameterSweep {
+        ParameterSweep {
+            method: SamplingMethod::Grid,
+            parameters: vec![(name.into(), ParameterVariation::Values(values.into()))],
             results: vec![("end".into(), result.into())],
-            ..Sweep::default()
+            ..ParameterSweep::default()
         }
     }
 
     #[test]
     fn each_run_has_its_results_or_its_reason() {
         let model = model(DECAY);
-        let plan = Plan::new(&model, &sweep("k", "1,2,9", "final(x)")).expect("fits");
+        let plan = SweepPlan::new(&model, &sweep("k", "1,2,9", "final(x)")).expect("fits");
         let settings = Settings { wanted: plan.wanted.clone(), ..Settings::default() };
         let never = AtomicBool::new(false);
         let run = |i| plan.run(&model, &settings, i, &never).map(|r| r.0[0]);
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn questions_without_sense() {
         let model = model(DECAY);
-        let said = |s: &Sweep| Plan::new(&model, s).expect_err("does not fit")[0].message.clone();
+        let said = |s: &ParameterSweep| SweepPlan::new(&model, s).expect_err("does not fit")[0].message.clone();
         assert_eq!(said(&sweep("kk", "1", "final(x)")), "the model has no parameter `kk`");
         assert!(said(&sweep("n", "1", "final(x)")).contains("structure"));
         assert!(said(&sweep("k", "1 m", "final(x)")).contains("cannot be converted"));

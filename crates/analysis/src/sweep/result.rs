@@ -4,7 +4,7 @@ use bramah_results::Trajectory;
 
 /// What can be asked of a variable's trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Question {
+enum TrajectoryMeasure {
     Max,
     Min,
     Mean,
@@ -20,45 +20,45 @@ enum Question {
     Overshoot,
 }
 
-const QUESTIONS: &[(&str, Question)] = &[
-    ("max", Question::Max),
-    ("min", Question::Min),
-    ("mean", Question::Mean),
-    ("rms", Question::Rms),
-    ("initial", Question::Initial),
-    ("final", Question::Final),
-    ("integral", Question::Integral),
-    ("energy", Question::Integral),
-    ("time_of_max", Question::TimeOfMax),
-    ("time_of_min", Question::TimeOfMin),
-    ("settling", Question::Settling),
-    ("overshoot", Question::Overshoot),
+const QUESTIONS: &[(&str, TrajectoryMeasure)] = &[
+    ("max", TrajectoryMeasure::Max),
+    ("min", TrajectoryMeasure::Min),
+    ("mean", TrajectoryMeasure::Mean),
+    ("rms", TrajectoryMeasure::Rms),
+    ("initial", TrajectoryMeasure::Initial),
+    ("final", TrajectoryMeasure::Final),
+    ("integral", TrajectoryMeasure::Integral),
+    ("energy", TrajectoryMeasure::Integral),
+    ("time_of_max", TrajectoryMeasure::TimeOfMax),
+    ("time_of_min", TrajectoryMeasure::TimeOfMin),
+    ("settling", TrajectoryMeasure::Settling),
+    ("overshoot", TrajectoryMeasure::Overshoot),
 ];
 
 /// An expression over questions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Expression {
-    root: Term,
+pub struct ResultExpression {
+    root: ResultTerm,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Term {
+enum ResultTerm {
     Number(f64),
-    Ask(Question, String, f64),
-    Abs(Box<Term>),
-    Root(Box<Term>),
-    Pair(char, Box<Term>, Box<Term>),
+    Ask(TrajectoryMeasure, String, f64),
+    Abs(Box<ResultTerm>),
+    Root(Box<ResultTerm>),
+    Pair(char, Box<ResultTerm>, Box<ResultTerm>),
 }
 
-impl Expression {
+impl ResultExpression {
     /// Reads an expression.
     ///
     /// # Errors
     /// A sentence saying what is expected.
-    pub fn parse(text: &str) -> Result<Expression, String> {
-        let mut parser = Parser { text, rest: text };
+    pub fn parse(text: &str) -> Result<ResultExpression, String> {
+        let mut parser = ResultParser { text, rest: text };
         let root = parser.sum(0)?;
-        if parser.rest.trim().is_empty() { Ok(Expression { root }) } else { Err(parser.unexpected()) }
+        if parser.rest.trim().is_empty() { Ok(ResultExpression { root }) } else { Err(parser.unexpected()) }
     }
 
     /// The variables it reads.
@@ -74,27 +74,27 @@ impl Expression {
     }
 }
 
-fn collect(term: &Term, found: &mut Vec<String>) {
+fn collect(term: &ResultTerm, found: &mut Vec<String>) {
     match term {
-        Term::Ask(_, name, _) if !found.contains(name) => found.push(name.clone()),
-        Term::Number(_) | Term::Ask(..) => {}
-        Term::Abs(a) | Term::Root(a) => collect(a, found),
-        Term::Pair(_, a, b) => {
+        ResultTerm::Ask(_, name, _) if !found.contains(name) => found.push(name.clone()),
+        ResultTerm::Number(_) | ResultTerm::Ask(..) => {}
+        ResultTerm::Abs(a) | ResultTerm::Root(a) => collect(a, found),
+        ResultTerm::Pair(_, a, b) => {
             collect(a, found);
             collect(b, found);
         }
     }
 }
 
-fn evaluate(term: &Term, run: &Trajectory) -> f64 {
+fn evaluate(term: &ResultTerm, run: &Trajectory) -> f64 {
     match term {
-        Term::Number(x) => *x,
-        Term::Ask(question, name, band) => {
+        ResultTerm::Number(x) => *x,
+        ResultTerm::Ask(question, name, band) => {
             run.column(name).map_or(f64::NAN, |values| answer(*question, &run.times, values, *band))
         }
-        Term::Abs(a) => evaluate(a, run).abs(),
-        Term::Root(a) => evaluate(a, run).sqrt(),
-        Term::Pair(op, a, b) => {
+        ResultTerm::Abs(a) => evaluate(a, run).abs(),
+        ResultTerm::Root(a) => evaluate(a, run).sqrt(),
+        ResultTerm::Pair(op, a, b) => {
             let (a, b) = (evaluate(a, run), evaluate(b, run));
             match op {
                 '+' => a + b,
@@ -107,7 +107,7 @@ fn evaluate(term: &Term, run: &Trajectory) -> f64 {
     }
 }
 
-fn answer(question: Question, times: &[f64], values: &[f64], band: f64) -> f64 {
+fn answer(question: TrajectoryMeasure, times: &[f64], values: &[f64], band: f64) -> f64 {
     let (Some(&first), Some(&last)) = (values.first(), values.last()) else { return f64::NAN };
     let most = |sign: f64| (0..values.len()).max_by(|&a, &b| (sign * values[a]).total_cmp(&(sign * values[b])));
     let extreme = |sign: f64| most(sign).map_or(f64::NAN, |k| values[k]);
@@ -117,21 +117,21 @@ fn answer(question: Question, times: &[f64], values: &[f64], band: f64) -> f64 {
     };
     let duration = times[times.len() - 1] - times[0];
     match question {
-        Question::Max => extreme(1.0),
-        Question::Min => extreme(-1.0),
-        Question::Initial => first,
-        Question::Final => last,
-        Question::Integral => integral(times, values, |v| v),
-        Question::Mean => integral(times, values, |v| v) / duration,
-        Question::Rms => (integral(times, values, |v| v * v) / duration).sqrt(),
-        Question::TimeOfMax => when(1.0),
-        Question::TimeOfMin => when(-1.0),
-        Question::Settling => {
+        TrajectoryMeasure::Max => extreme(1.0),
+        TrajectoryMeasure::Min => extreme(-1.0),
+        TrajectoryMeasure::Initial => first,
+        TrajectoryMeasure::Final => last,
+        TrajectoryMeasure::Integral => integral(times, values, |v| v),
+        TrajectoryMeasure::Mean => integral(times, values, |v| v) / duration,
+        TrajectoryMeasure::Rms => (integral(times, values, |v| v * v) / duration).sqrt(),
+        TrajectoryMeasure::TimeOfMax => when(1.0),
+        TrajectoryMeasure::TimeOfMin => when(-1.0),
+        TrajectoryMeasure::Settling => {
             let near = band * (last - first).abs();
             let outside = values.iter().rposition(|v| (v - last).abs() > near);
             outside.map_or(0.0, |k| times[(k + 1).min(times.len() - 1)] - times[0])
         }
-        Question::Overshoot => {
+        TrajectoryMeasure::Overshoot => {
             let change = last - first;
             (extreme(change.signum()) - last) / change
         }
@@ -144,7 +144,7 @@ fn integral(times: &[f64], values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     pairs.map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1]))).sum()
 }
 
-struct Parser<'a> {
+struct ResultParser<'a> {
     text: &'a str,
     rest: &'a str,
 }
@@ -152,7 +152,7 @@ struct Parser<'a> {
 /// Brackets may be nested so deep.
 const DEEPEST: u32 = 50;
 
-impl Parser<'_> {
+impl ResultParser<'_> {
     fn unexpected(&self) -> String {
         let rest = self.rest.trim();
         let at = if rest.is_empty() { "its end" } else { rest };
@@ -171,34 +171,34 @@ impl Parser<'_> {
         &mut self,
         ops: [char; 2],
         depth: u32,
-        next: fn(&mut Self, u32) -> Result<Term, String>,
-    ) -> Result<Term, String> {
+        next: fn(&mut Self, u32) -> Result<ResultTerm, String>,
+    ) -> Result<ResultTerm, String> {
         let mut left = next(self, depth)?;
         while let Some(op) = ops.into_iter().find(|&c| self.eat(c)) {
-            left = Term::Pair(op, Box::new(left), Box::new(next(self, depth)?));
+            left = ResultTerm::Pair(op, Box::new(left), Box::new(next(self, depth)?));
         }
         Ok(left)
     }
 
-    fn sum(&mut self, depth: u32) -> Result<Term, String> {
+    fn sum(&mut self, depth: u32) -> Result<ResultTerm, String> {
         self.pairs(['+', '-'], depth, Self::product)
     }
 
-    fn product(&mut self, depth: u32) -> Result<Term, String> {
+    fn product(&mut self, depth: u32) -> Result<ResultTerm, String> {
         self.pairs(['*', '/'], depth, Self::power)
     }
 
-    fn power(&mut self, depth: u32) -> Result<Term, String> {
+    fn power(&mut self, depth: u32) -> Result<ResultTerm, String> {
         let base = self.factor(depth)?;
-        if self.eat('^') { Ok(Term::Pair('^', Box::new(base), Box::new(self.factor(depth)?))) } else { Ok(base) }
+        if self.eat('^') { Ok(ResultTerm::Pair('^', Box::new(base), Box::new(self.factor(depth)?))) } else { Ok(base) }
     }
 
-    fn factor(&mut self, depth: u32) -> Result<Term, String> {
+    fn factor(&mut self, depth: u32) -> Result<ResultTerm, String> {
         if depth > DEEPEST {
             return Err(format!("the expression `{}` is nested too deeply", self.text));
         }
         if self.eat('-') {
-            return Ok(Term::Pair('-', Box::new(Term::Number(0.0)), Box::new(self.power(depth + 1)?)));
+            return Ok(ResultTerm::Pair('-', Box::new(ResultTerm::Number(0.0)), Box::new(self.power(depth + 1)?)));
         }
         if self.eat('(') {
             let inner = self.sum(depth + 1)?;
@@ -209,22 +209,22 @@ impl Parser<'_> {
         if is_number { self.number() } else { self.call(depth) }
     }
 
-    fn number(&mut self) -> Result<Term, String> {
+    fn number(&mut self) -> Result<ResultTerm, String> {
         let fits = |n: &usize| self.rest.is_char_boundary(*n) && self.rest[..*n].parse::<f64>().is_ok();
         let length = (1..=self.rest.len().min(40)).rev().find(fits).ok_or_else(|| self.unexpected())?;
         let (digits, rest) = self.rest.split_at(length);
         self.rest = rest;
-        digits.trim().parse().map(Term::Number).map_err(|_| self.unexpected())
+        digits.trim().parse().map(ResultTerm::Number).map_err(|_| self.unexpected())
     }
 
-    fn call(&mut self, depth: u32) -> Result<Term, String> {
+    fn call(&mut self, depth: u32) -> Result<ResultTerm, String> {
         let end = self.rest.find('(').ok_or_else(|| self.unexpected())?;
         let (name, rest) = (self.rest[..end].trim(), &self.rest[end + 1..]);
         if name == "abs" || name == "sqrt" {
             self.rest = rest;
             let inner = Box::new(self.sum(depth + 1)?);
             let closed = self.eat(')');
-            let term = if name == "abs" { Term::Abs(inner) } else { Term::Root(inner) };
+            let term = if name == "abs" { ResultTerm::Abs(inner) } else { ResultTerm::Root(inner) };
             return if closed { Ok(term) } else { Err(self.unexpected()) };
         }
         let Some((_, question)) = QUESTIONS.iter().find(|q| q.0 == name) else {
@@ -234,12 +234,12 @@ impl Parser<'_> {
         let close = rest.find(')').ok_or_else(|| self.unexpected())?;
         let inside = &rest[..close];
         let band = inside.rsplit_once(',').and_then(|(v, b)| Some((v, b.trim().parse::<f64>().ok()?)));
-        let (variable, band) = band.filter(|_| *question == Question::Settling).unwrap_or((inside, 0.05));
+        let (variable, band) = band.filter(|_| *question == TrajectoryMeasure::Settling).unwrap_or((inside, 0.05));
         if variable.trim().is_empty() {
             return Err(format!("`{name}` of which variable?"));
         }
         self.rest = &rest[close + 1..];
-        Ok(Term::Ask(*question, variable.trim().to_owned(), band))
+        Ok(ResultTerm::Ask(*question, variable.trim().to_owned(), band))
     }
 }
 
@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn questions_and_arithmetic() {
-        let value = |text: &str| Expression::parse(text).expect(text).evaluate(&run());
+        let value = |text: &str| ResultExpression::parse(text).expect(text).evaluate(&run());
         assert_eq!(value("max(v[1,2].p) - 2*final(v[1,2].p)/4"), 7.0);
         assert_eq!(value("overshoot(v[1,2].p)"), 0.2);
         assert_eq!(value("settling(v[1,2].p, 0.05)"), 3.0);
@@ -267,14 +267,14 @@ mod tests {
         assert_eq!((value("integral(x)"), value("mean(x)"), value("rms(x)")), (4.0, 1.0, 1.0));
         assert_eq!(value("-(1 + 1e0)^2 + abs(-min(x)) + sqrt(4)"), -1.0);
         assert!(value("max(unknown)").is_nan());
-        assert_eq!(Expression::parse("max(a.b) + min(a.b)").unwrap().variables(), ["a.b"]);
+        assert_eq!(ResultExpression::parse("max(a.b) + min(a.b)").unwrap().variables(), ["a.b"]);
     }
 
     #[test]
     fn mistakes() {
         for bad in ["", "max", "max(", "max()", "foo(x)", "1 +", "(1", "1 2", "max(x))", "é"] {
-            assert!(Expression::parse(bad).is_err(), "{bad}");
+            assert!(ResultExpression::parse(bad).is_err(), "{bad}");
         }
-        assert!(Expression::parse(&"(".repeat(10_000)).is_err());
+        assert!(ResultExpression::parse(&"(".repeat(10_000)).is_err());
     }
 }

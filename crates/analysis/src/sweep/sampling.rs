@@ -1,7 +1,7 @@
 //! Samples: which values of the parameters each run gets.
 
 use super::sobol;
-use crate::experiment::{Sampling, Spread, Sweep};
+use crate::experiment::{ParameterSweep, ParameterVariation, SamplingMethod};
 use crate::grid;
 use crate::study::Amount;
 use statrs::function::erf::erfc_inv;
@@ -9,7 +9,7 @@ use std::f64::consts::SQRT_2;
 
 /// A parameter that varies.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Varied {
+pub struct SweepParameter {
     /// Its name.
     pub name: String,
     /// Its unit; may be empty.
@@ -17,18 +17,18 @@ pub struct Varied {
     /// Its value in the model.
     pub value: f64,
     /// How it varies.
-    pub spread: Spread,
+    pub spread: ParameterVariation,
 }
 
 /// Numbers that look random, evenly spread between 0 and 1. Source: S. Vigna, xorshift64* (2016).
 #[derive(Clone, Debug)]
-pub struct Random(u64);
+pub struct XorshiftGenerator(u64);
 
-impl Random {
+impl XorshiftGenerator {
     /// The same seed gives the same numbers.
-    pub fn new(seed: u64) -> Random {
+    pub fn new(seed: u64) -> XorshiftGenerator {
         // spreads neighbouring seeds far apart; zero is no state
-        Random((seed ^ 0x9E37_79B9_7F4A_7C15).wrapping_mul(0xBF58_476D_1CE4_E5B9) | 1)
+        XorshiftGenerator((seed ^ 0x9E37_79B9_7F4A_7C15).wrapping_mul(0xBF58_476D_1CE4_E5B9) | 1)
     }
 
     /// The next number, above 0 and below 1.
@@ -50,21 +50,21 @@ impl Random {
 ///
 /// # Errors
 /// A sentence saying which parameter cannot vary so.
-pub fn samples(sweep: &Sweep, varied: &[Varied]) -> Result<Vec<Vec<f64>>, String> {
+pub fn samples(sweep: &ParameterSweep, varied: &[SweepParameter]) -> Result<Vec<Vec<f64>>, String> {
     match sweep.method {
-        Sampling::Grid => Ok(products(&lists(varied)?)),
-        Sampling::List => zipped(&lists(varied)?, varied),
+        SamplingMethod::Grid => Ok(products(&lists(varied)?)),
+        SamplingMethod::List => zipped(&lists(varied)?, varied),
         _ => {
             let unit = unit_cube(sweep, varied.len())?;
-            let map: Vec<Map> = varied.iter().map(Map::new).collect::<Result<_, _>>()?;
+            let map: Vec<QuantileFunction> = varied.iter().map(QuantileFunction::new).collect::<Result<_, _>>()?;
             Ok(unit.into_iter().map(|row| row.iter().zip(&map).map(|(p, m)| m.at(*p)).collect()).collect())
         }
     }
 }
 
-fn lists(varied: &[Varied]) -> Result<Vec<Vec<f64>>, String> {
-    let list = |v: &Varied| match &v.spread {
-        Spread::Values(text) => grid::values(text, &v.unit).map_err(|e| format!("`{}`: {e}", v.name)),
+fn lists(varied: &[SweepParameter]) -> Result<Vec<Vec<f64>>, String> {
+    let list = |v: &SweepParameter| match &v.spread {
+        ParameterVariation::Values(text) => grid::values(text, &v.unit).map_err(|e| format!("`{}`: {e}", v.name)),
         _ => Err(format!("`{}`: a grid or list needs values, such as `1,2,5` or `0:10:11`", v.name)),
     };
     varied.iter().map(list).collect()
@@ -79,7 +79,7 @@ fn products(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
     all
 }
 
-fn zipped(lists: &[Vec<f64>], varied: &[Varied]) -> Result<Vec<Vec<f64>>, String> {
+fn zipped(lists: &[Vec<f64>], varied: &[SweepParameter]) -> Result<Vec<Vec<f64>>, String> {
     let count = lists.first().map_or(0, Vec::len);
     if let Some(k) = lists.iter().position(|l| l.len() != count) {
         let (name, n) = (&varied[k].name, lists[k].len());
@@ -89,16 +89,16 @@ fn zipped(lists: &[Vec<f64>], varied: &[Varied]) -> Result<Vec<Vec<f64>>, String
 }
 
 /// Points between 0 and 1 in as many directions as parameters.
-fn unit_cube(sweep: &Sweep, directions: usize) -> Result<Vec<Vec<f64>>, String> {
-    let mut random = Random::new(sweep.seed);
+fn unit_cube(sweep: &ParameterSweep, directions: usize) -> Result<Vec<Vec<f64>>, String> {
+    let mut random = XorshiftGenerator::new(sweep.seed);
     Ok(match sweep.method {
-        Sampling::LatinHypercube => latin_hypercube(sweep.count, directions, &mut random),
-        Sampling::Sobol => sobol::design(sweep.count, directions)?,
+        SamplingMethod::LatinHypercube => latin_hypercube(sweep.count, directions, &mut random),
+        SamplingMethod::Sobol => sobol::design(sweep.count, directions)?,
         _ => (0..sweep.count).map(|_| (0..directions).map(|_| random.roll()).collect()).collect(),
     })
 }
 
-fn latin_hypercube(count: usize, directions: usize, random: &mut Random) -> Vec<Vec<f64>> {
+fn latin_hypercube(count: usize, directions: usize, random: &mut XorshiftGenerator) -> Vec<Vec<f64>> {
     let mut rows = vec![vec![0.0; directions]; count];
     for j in 0..directions {
         let mut order: Vec<usize> = (0..count).collect();
@@ -113,19 +113,19 @@ fn latin_hypercube(count: usize, directions: usize, random: &mut Random) -> Vec<
 }
 
 /// From a share between 0 and 1 to a value.
-enum Map {
+enum QuantileFunction {
     Even(f64, f64),
     Logarithmic(f64, f64),
     Normal(f64, f64),
     LogNormal(f64, f64),
 }
 
-impl Map {
-    fn new(v: &Varied) -> Result<Map, String> {
+impl QuantileFunction {
+    fn new(v: &SweepParameter) -> Result<QuantileFunction, String> {
         let message = |e: String| format!("`{}`: {e}", v.name);
         let amount = |text: &str| Amount::parse(text).map_err(message);
         match &v.spread {
-            Spread::Range { min, max, logarithmic } => {
+            ParameterVariation::Range { min, max, logarithmic } => {
                 let value = |t: &str| amount(t)?.in_unit(&v.unit, v.value).map_err(message);
                 let (low, high) = (value(min)?, value(max)?);
                 if low >= high || (*logarithmic && low <= 0.0) {
@@ -133,22 +133,29 @@ impl Map {
                         "`min` must lie below `max`, and above zero for a logarithmic range".to_owned(),
                     ));
                 }
-                Ok(if *logarithmic { Map::Logarithmic(low.ln(), high.ln()) } else { Map::Even(low, high) })
+                Ok(if *logarithmic {
+                    QuantileFunction::Logarithmic(low.ln(), high.ln())
+                } else {
+                    QuantileFunction::Even(low, high)
+                })
             }
-            Spread::Sigma(text) => match amount(text)? {
-                Amount::Part(part) if v.value > 0.0 => Ok(Map::LogNormal(v.value, part)),
-                other => Ok(Map::Normal(v.value, other.difference_in_unit(&v.unit, v.value.abs()).map_err(message)?)),
+            ParameterVariation::Sigma(text) => match amount(text)? {
+                Amount::Part(part) if v.value > 0.0 => Ok(QuantileFunction::LogNormal(v.value, part)),
+                other => Ok(QuantileFunction::Normal(
+                    v.value,
+                    other.difference_in_unit(&v.unit, v.value.abs()).map_err(message)?,
+                )),
             },
-            Spread::Values(_) => Err(message("samples need `min` and `max`, or `sigma`".to_owned())),
+            ParameterVariation::Values(_) => Err(message("samples need `min` and `max`, or `sigma`".to_owned())),
         }
     }
 
     fn at(&self, share: f64) -> f64 {
         match *self {
-            Map::Even(low, high) => low + share * (high - low),
-            Map::Logarithmic(low, high) => (low + share * (high - low)).exp(),
-            Map::Normal(mean, sigma) => mean + sigma * quantile(share),
-            Map::LogNormal(median, part) => median * (part * quantile(share)).exp(),
+            QuantileFunction::Even(low, high) => low + share * (high - low),
+            QuantileFunction::Logarithmic(low, high) => (low + share * (high - low)).exp(),
+            QuantileFunction::Normal(mean, sigma) => mean + sigma * quantile(share),
+            QuantileFunction::LogNormal(median, part) => median * (part * quantile(share)).exp(),
         }
     }
 }
@@ -162,8 +169,8 @@ pub fn quantile(share: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn varied(spreads: &[Spread]) -> Vec<Varied> {
-        let one = |(k, s): (usize, &Spread)| Varied {
+    fn varied(spreads: &[ParameterVariation]) -> Vec<SweepParameter> {
+        let one = |(k, s): (usize, &ParameterVariation)| SweepParameter {
             name: format!("p{k}"),
             unit: "Pa".into(),
             value: 2e5,
@@ -172,32 +179,33 @@ mod tests {
         spreads.iter().enumerate().map(one).collect()
     }
 
-    fn values(text: &str) -> Spread {
-        Spread::Values(text.into())
+    fn values(text: &str) -> ParameterVariation {
+        ParameterVariation::Values(text.into())
     }
 
-    fn range(min: &str, max: &str) -> Spread {
-        Spread::Range { min: min.into(), max: max.into(), logarithmic: false }
+    fn range(min: &str, max: &str) -> ParameterVariation {
+        ParameterVariation::Range { min: min.into(), max: max.into(), logarithmic: false }
     }
 
-    fn sweep(method: Sampling, count: usize) -> Sweep {
-        Sweep { method, count, seed: 7, ..Sweep::default() }
+    fn sweep(method: SamplingMethod, count: usize) -> ParameterSweep {
+        ParameterSweep { method, count, seed: 7, ..ParameterSweep::default() }
     }
 
     #[test]
     fn grids_and_lists() {
         let two = varied(&[values("1,2 bar"), values("0:4:3")]);
-        let grid = samples(&sweep(Sampling::Grid, 0), &two).unwrap();
+        let grid = samples(&sweep(SamplingMethod::Grid, 0), &two).unwrap();
         assert_eq!((grid.len(), grid[1].as_slice()), (6, [1e5, 2.0].as_slice()));
-        assert!(samples(&sweep(Sampling::List, 0), &two).unwrap_err().contains("has 3 values"));
-        let list = samples(&sweep(Sampling::List, 0), &varied(&[values("1,2"), values("3,4")])).unwrap();
+        assert!(samples(&sweep(SamplingMethod::List, 0), &two).unwrap_err().contains("has 3 values"));
+        let list = samples(&sweep(SamplingMethod::List, 0), &varied(&[values("1,2"), values("3,4")])).unwrap();
         assert_eq!(list, [[1.0, 3.0], [2.0, 4.0]]);
-        assert!(samples(&sweep(Sampling::Grid, 0), &varied(&[range("1", "2")])).is_err());
+        assert!(samples(&sweep(SamplingMethod::Grid, 0), &varied(&[range("1", "2")])).is_err());
     }
 
     #[test]
     fn a_latin_hypercube_has_one_sample_in_each_part() {
-        let rows = samples(&sweep(Sampling::LatinHypercube, 20), &varied(&[range("0", "20"), range("1 bar", "2 bar")]));
+        let rows =
+            samples(&sweep(SamplingMethod::LatinHypercube, 20), &varied(&[range("0", "20"), range("1 bar", "2 bar")]));
         let mut parts: Vec<usize> = rows.unwrap().iter().map(|r| r[0] as usize).collect();
         parts.sort_unstable();
         assert_eq!(parts, (0..20).collect::<Vec<_>>());
@@ -205,12 +213,16 @@ mod tests {
 
     #[test]
     fn tolerances_are_normal_and_log_normal() {
-        let rows = samples(&sweep(Sampling::MonteCarlo, 4000), &varied(&[Spread::Sigma("10 %".into())])).unwrap();
+        let rows =
+            samples(&sweep(SamplingMethod::MonteCarlo, 4000), &varied(&[ParameterVariation::Sigma("10 %".into())]))
+                .unwrap();
         let logs: Vec<f64> = rows.iter().map(|r| (r[0] / 2e5).ln()).collect();
         let mean = logs.iter().sum::<f64>() / 4000.0;
         let spread = (logs.iter().map(|l| l * l).sum::<f64>() / 4000.0).sqrt();
         assert!(mean.abs() < 0.006 && (spread - 0.1).abs() < 0.005, "{mean} {spread}");
-        let rows = samples(&sweep(Sampling::MonteCarlo, 100), &varied(&[Spread::Sigma("0.1 bar".into())])).unwrap();
+        let rows =
+            samples(&sweep(SamplingMethod::MonteCarlo, 100), &varied(&[ParameterVariation::Sigma("0.1 bar".into())]))
+                .unwrap();
         assert!(rows.iter().all(|r| (r[0] - 2e5).abs() < 5e4));
     }
 

@@ -1,6 +1,6 @@
 //! Sobol' sequences, and sensitivity indices with their confidence.
 
-use super::sampling::Random;
+use super::sampling::XorshiftGenerator;
 
 /// Degree, coefficients and first direction numbers of primitive polynomials. Source: S. Joe, F. Y. Kuo, SIAM J. Sci.
 /// Comput. 30 (2008) 2635.
@@ -89,7 +89,7 @@ pub fn design(count: usize, directions: usize) -> Result<Vec<Vec<f64>>, String> 
 
 /// How much of a result's variance a parameter makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Index {
+pub struct SobolIndex {
     /// Alone.
     pub first: f64,
     /// With everything it acts together with.
@@ -107,14 +107,14 @@ const RESAMPLINGS: usize = 200;
 /// fewer than eight are left or nothing varies.
 ///
 /// Source: A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, table 2 (b) and (f).
-pub fn indices(results: &[f64], directions: usize, seed: u64) -> Option<Vec<Index>> {
+pub fn indices(results: &[f64], directions: usize, seed: u64) -> Option<Vec<SobolIndex>> {
     let groups: Vec<&[f64]> =
         results.chunks_exact(directions + 2).filter(|g| g.iter().all(|v| v.is_finite())).collect();
     if groups.len() < 8 {
         return None;
     }
     let (first, total) = estimate(&groups, directions)?;
-    let mut random = Random::new(seed);
+    let mut random = XorshiftGenerator::new(seed);
     let mut spread = vec![(Vec::new(), Vec::new()); directions];
     for _ in 0..RESAMPLINGS {
         let drawn: Vec<&[f64]> = (0..groups.len()).map(|_| groups[random.below(groups.len())]).collect();
@@ -124,7 +124,7 @@ pub fn indices(results: &[f64], directions: usize, seed: u64) -> Option<Vec<Inde
             spread[j].1.push(t[j]);
         }
     }
-    let index = |j: usize| Index {
+    let index = |j: usize| SobolIndex {
         first: first[j],
         total: total[j],
         first_confidence: 1.96 * deviation(&spread[j].0),

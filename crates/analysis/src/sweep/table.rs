@@ -1,7 +1,7 @@
 //! The table of a sweep: a line a run, written as runs finish, read back to go on, merged from parts.
 
 use bramah_results::number;
-use bramah_results::parquet::Values;
+use bramah_results::parquet::ColumnValues;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ const MARK: &str = "# bramah sweep ";
 
 /// Finished runs.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Table {
+pub struct SweepTable {
     /// Which sweep it belongs to.
     pub fingerprint: String,
     /// How many runs the whole sweep has.
@@ -36,10 +36,10 @@ pub fn fingerprint(words: &[String], numbers: &[Vec<f64>]) -> String {
     format!("{hash:016x}")
 }
 
-impl Table {
+impl SweepTable {
     /// An empty table.
-    pub fn new(fingerprint: String, runs: usize, columns: Vec<String>) -> Table {
-        Table { fingerprint, runs, columns, rows: BTreeMap::new() }
+    pub fn new(fingerprint: String, runs: usize, columns: Vec<String>) -> SweepTable {
+        SweepTable { fingerprint, runs, columns, rows: BTreeMap::new() }
     }
 
     /// The lines above the rows.
@@ -66,7 +66,7 @@ impl Table {
 
     /// Everything, by runs.
     pub fn text(&self) -> String {
-        let lines = self.rows.iter().map(|(run, (values, status))| Table::line(*run, values, status));
+        let lines = self.rows.iter().map(|(run, (values, status))| SweepTable::line(*run, values, status));
         self.head() + &lines.collect::<String>()
     }
 
@@ -74,7 +74,7 @@ impl Table {
     ///
     /// # Errors
     /// A sentence where the text is no table of a sweep.
-    pub fn read(text: &str) -> Result<Table, String> {
+    pub fn read(text: &str) -> Result<SweepTable, String> {
         let no_table = || "it is not the table of a sweep".to_owned();
         let (first, rest) = text.split_once('\n').ok_or_else(no_table)?;
         let (print, runs) = first.strip_prefix(MARK).and_then(|t| t.trim().split_once(' ')).ok_or_else(no_table)?;
@@ -85,7 +85,7 @@ impl Table {
             return Err(no_table());
         }
         let columns = names[1..names.len() - 1].to_vec();
-        let mut table = Table::new(print.to_owned(), runs, columns);
+        let mut table = SweepTable::new(print.to_owned(), runs, columns);
         for line in body.split_inclusive('\n').filter(|l| l.ends_with('\n')) {
             let cells = cells(line.trim_end_matches(['\n', '\r']));
             let run = cells[0].parse::<usize>().ok().filter(|_| cells.len() == names.len());
@@ -100,7 +100,7 @@ impl Table {
     ///
     /// # Errors
     /// A sentence where it belongs to another sweep.
-    pub fn merge(&mut self, other: Table) -> Result<(), String> {
+    pub fn merge(&mut self, other: SweepTable) -> Result<(), String> {
         if other.fingerprint != self.fingerprint || other.columns != self.columns {
             return Err("it belongs to another sweep".to_owned());
         }
@@ -109,10 +109,10 @@ impl Table {
     }
 
     /// All rows as columns with their types: `run`, parameters and results, `status`.
-    pub fn typed(&self) -> Vec<(String, Values<'_>)> {
-        let run = Values::Integer(self.rows.keys().map(|&run| i64::try_from(run).ok()).collect());
-        let numbers = |k: usize| Values::Real(self.rows.values().map(|row| row.0[k]).collect());
-        let status = Values::Text(self.rows.values().map(|row| Some(row.1.as_str())).collect());
+    pub fn typed(&self) -> Vec<(String, ColumnValues<'_>)> {
+        let run = ColumnValues::Integer(self.rows.keys().map(|&run| i64::try_from(run).ok()).collect());
+        let numbers = |k: usize| ColumnValues::Real(self.rows.values().map(|row| row.0[k]).collect());
+        let status = ColumnValues::Text(self.rows.values().map(|row| Some(row.1.as_str())).collect());
         let columns = self.columns.iter().enumerate().map(|(k, name)| (name.clone(), numbers(k)));
         std::iter::once(("run".to_owned(), run)).chain(columns).chain([("status".to_owned(), status)]).collect()
     }
@@ -151,9 +151,9 @@ fn cells(line: &str) -> Vec<String> {
 mod tests {
     use super::*;
 
-    fn table() -> Table {
+    fn table() -> SweepTable {
         let print = fingerprint(&["a".into()], &[vec![1.0]]);
-        let mut table = Table::new(print, 3, vec!["v[1,2].p".into(), "peak".into()]);
+        let mut table = SweepTable::new(print, 3, vec!["v[1,2].p".into(), "peak".into()]);
         table.rows.insert(2, (vec![1.5, f64::NAN], "it said \"no\", twice".into()));
         table.rows.insert(1, (vec![1e-7, 3.0], "ok".into()));
         table
@@ -162,21 +162,21 @@ mod tests {
     #[test]
     fn tables_are_read_back_and_a_torn_line_is_left_out() {
         let text = table().text();
-        let again = Table::read(&(text.clone() + "3,1.5,2")).unwrap();
+        let again = SweepTable::read(&(text.clone() + "3,1.5,2")).unwrap();
         assert_eq!(again.text(), text);
         assert_eq!(again.column(1)[0], 3.0);
         assert!(again.column(1)[1..].iter().all(|v| v.is_nan()));
-        assert!(Table::read("time,x\n0,1\n").is_err() && Table::read("").is_err());
+        assert!(SweepTable::read("time,x\n0,1\n").is_err() && SweepTable::read("").is_err());
     }
 
     #[test]
     fn parts_are_merged() {
         let mut whole = table();
-        let mut part = Table::new(whole.fingerprint.clone(), 3, whole.columns.clone());
+        let mut part = SweepTable::new(whole.fingerprint.clone(), 3, whole.columns.clone());
         part.rows.insert(3, (vec![0.0, 1.0], "ok".into()));
         whole.merge(part).unwrap();
         assert_eq!(whole.rows.len(), 3);
-        assert!(whole.merge(Table::default()).is_err());
+        assert!(whole.merge(SweepTable::default()).is_err());
         assert_ne!(fingerprint(&["a".into()], &[]), fingerprint(&["b".into()], &[]));
     }
 }

@@ -6,4 +6,4 @@ pub mod unit;
 
 pub use dimension::Dimension;
 pub use dimension::power_of;
-pub use unit::{Unit, UnitError, quantity};
+pub use unit::{MeasurementUnit, UnitError, quantity};

@@ -4,7 +4,7 @@ use super::Dimension;
 
 /// What one symbol means: `num*10^decade/den` coherent SI units, `offset` added.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Symbol {
+pub(super) struct UnitSymbol {
     pub dimension: Dimension,
     /// Whether it is an angle: 1 or 0.
     pub angle: i16,
@@ -39,20 +39,20 @@ const PREFIXES: [(&str, i32); 22] = [
     ("y", -24),
 ];
 
-const fn si(dimension: [i16; 7]) -> Symbol {
-    Symbol { dimension: Dimension::new(dimension), angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 }
+const fn si(dimension: [i16; 7]) -> UnitSymbol {
+    UnitSymbol { dimension: Dimension::new(dimension), angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 }
 }
 
-const fn decimal(decade: i32, dimension: [i16; 7]) -> Symbol {
-    Symbol { decade, ..si(dimension) }
+const fn decimal(decade: i32, dimension: [i16; 7]) -> UnitSymbol {
+    UnitSymbol { decade, ..si(dimension) }
 }
 
-const fn scaled(num: f64, den: f64, dimension: [i16; 7]) -> Symbol {
-    Symbol { num, den, ..si(dimension) }
+const fn scaled(num: f64, den: f64, dimension: [i16; 7]) -> UnitSymbol {
+    UnitSymbol { num, den, ..si(dimension) }
 }
 
-const fn angle(num: f64, den: f64) -> Symbol {
-    Symbol { num, den, angle: 1, ..si(ONE) }
+const fn angle(num: f64, den: f64) -> UnitSymbol {
+    UnitSymbol { num, den, angle: 1, ..si(ONE) }
 }
 
 const ONE: [i16; 7] = [0; 7];
@@ -72,7 +72,7 @@ const TURN: f64 = std::f64::consts::TAU;
 const HALF_TURN: f64 = std::f64::consts::PI;
 
 /// A symbol that takes prefixes.
-fn prefixable(name: &str) -> Option<Symbol> {
+fn prefixable(name: &str) -> Option<UnitSymbol> {
     Some(match name {
         "m" => si(LENGTH),
         "g" => decimal(-3, MASS),
@@ -106,7 +106,7 @@ fn prefixable(name: &str) -> Option<Symbol> {
         "t" => decimal(3, MASS),
         "P" => decimal(-1, [1, -1, -1, 0, 0, 0, 0]),
         "St" => decimal(-4, [0, 2, -1, 0, 0, 0, 0]),
-        "eV" => Symbol { num: 1.602_176_634, ..decimal(-19, ENERGY) },
+        "eV" => UnitSymbol { num: 1.602_176_634, ..decimal(-19, ENERGY) },
         "Wh" => scaled(3600.0, 1.0, ENERGY),
         "cal" => scaled(4.184, 1.0, ENERGY),
         _ => return None,
@@ -114,7 +114,7 @@ fn prefixable(name: &str) -> Option<Symbol> {
 }
 
 /// A symbol that stands alone.
-fn plain(name: &str) -> Option<Symbol> {
+fn plain(name: &str) -> Option<UnitSymbol> {
     Some(match name {
         "1" => si(ONE),
         "min" => scaled(60.0, 1.0, TIME),
@@ -123,9 +123,9 @@ fn plain(name: &str) -> Option<Symbol> {
         "deg" | "\u{b0}" => angle(HALF_TURN, 180.0),
         "gon" => angle(HALF_TURN, 200.0),
         "rev" | "r" => angle(TURN, 1.0),
-        "rpm" => Symbol { dimension: Dimension::new(FREQUENCY), ..angle(TURN, 60.0) },
-        "degC" | "\u{b0}C" => Symbol { offset: 273.15, ..si(TEMPERATURE) },
-        "degF" | "\u{b0}F" => Symbol { offset: 459.67 * 5.0 / 9.0, ..scaled(5.0, 9.0, TEMPERATURE) },
+        "rpm" => UnitSymbol { dimension: Dimension::new(FREQUENCY), ..angle(TURN, 60.0) },
+        "degC" | "\u{b0}C" => UnitSymbol { offset: 273.15, ..si(TEMPERATURE) },
+        "degF" | "\u{b0}F" => UnitSymbol { offset: 459.67 * 5.0 / 9.0, ..scaled(5.0, 9.0, TEMPERATURE) },
         "degRk" => scaled(5.0, 9.0, TEMPERATURE),
         "%" => decimal(-2, ONE),
         "ppm" => decimal(-6, ONE),
@@ -133,16 +133,16 @@ fn plain(name: &str) -> Option<Symbol> {
         "atm" => scaled(101_325.0, 1.0, PRESSURE),
         "psi" => scaled(6_894.757_293_168, 1.0, PRESSURE),
         "cc" => decimal(-6, VOLUME),
-        "lpm" => Symbol { den: 60.0, ..decimal(-3, FLOW) },
+        "lpm" => UnitSymbol { den: 60.0, ..decimal(-3, FLOW) },
         // US gallons
-        "gpm" => Symbol { num: 3_785_411_784.0, den: 60.0, ..decimal(-12, FLOW) },
+        "gpm" => UnitSymbol { num: 3_785_411_784.0, den: 60.0, ..decimal(-12, FLOW) },
         "mmHg" => scaled(133.322_387_415, 1.0, PRESSURE),
         "kgf" => scaled(9.80665, 1.0, FORCE),
         "lbf" => scaled(4.448_221_615_260_5, 1.0, FORCE),
         "lb" => scaled(0.453_592_37, 1.0, MASS),
-        "in" => Symbol { num: 254.0, ..decimal(-4, LENGTH) },
-        "ft" => Symbol { num: 3048.0, ..decimal(-4, LENGTH) },
-        "gal" => Symbol { num: 3_785_411_784.0, ..decimal(-12, VOLUME) },
+        "in" => UnitSymbol { num: 254.0, ..decimal(-4, LENGTH) },
+        "ft" => UnitSymbol { num: 3048.0, ..decimal(-4, LENGTH) },
+        "gal" => UnitSymbol { num: 3_785_411_784.0, ..decimal(-12, VOLUME) },
         "PS" => scaled(735.498_75, 1.0, POWER),
         "hp" => scaled(745.699_871_582, 1.0, POWER),
         _ => return None,
@@ -150,13 +150,13 @@ fn plain(name: &str) -> Option<Symbol> {
 }
 
 /// What a symbol means, with a prefix or without.
-pub(super) fn lookup(name: &str) -> Option<Symbol> {
+pub(super) fn lookup(name: &str) -> Option<UnitSymbol> {
     plain(name).or_else(|| prefixable(name)).or_else(|| prefixed(name))
 }
 
-fn prefixed(name: &str) -> Option<Symbol> {
+fn prefixed(name: &str) -> Option<UnitSymbol> {
     PREFIXES.iter().find_map(|(prefix, decade)| {
         let symbol = prefixable(name.strip_prefix(prefix)?)?;
-        Some(Symbol { decade: symbol.decade + decade, ..symbol })
+        Some(UnitSymbol { decade: symbol.decade + decade, ..symbol })
     })
 }

@@ -5,13 +5,13 @@
 //! refused, as in Modelica, because it can be read in two ways.
 
 use super::dimension::{Dimension, WHOLE, power_of};
-use super::symbols::{self, Symbol};
+use super::symbols::{self, UnitSymbol};
 
 /// A unit of measurement. A value `x` in it is `x*factor + offset` in coherent SI units.
 ///
 /// The factor is kept as `num*10^decade/den`, so that converting `0.8 ml` to m3 gives the number nearest to 8e-7.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Unit {
+pub struct MeasurementUnit {
     /// The dimension. An angle has none.
     pub dimension: Dimension,
     /// The exponent of the angle in sixtieths, which [`Dimension`] leaves out: 60 for `rad/s`, 0 for `1/s`.
@@ -56,16 +56,17 @@ pub enum UnitError {
     },
 }
 
-impl Unit {
+impl MeasurementUnit {
     /// The number 1.
-    pub const ONE: Unit = Unit { dimension: Dimension::NONE, angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 };
+    pub const ONE: MeasurementUnit =
+        MeasurementUnit { dimension: Dimension::NONE, angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 };
 
     /// Reads a unit string; the empty one is the unit 1.
-    pub fn parse(text: &str) -> Result<Unit, UnitError> {
+    pub fn parse(text: &str) -> Result<MeasurementUnit, UnitError> {
         if text.trim().is_empty() {
-            return Ok(Unit::ONE);
+            return Ok(MeasurementUnit::ONE);
         }
-        let mut parser = Parser { unit: text.trim(), rest: text.trim() };
+        let mut parser = UnitParser { unit: text.trim(), rest: text.trim() };
         let unit = parser.unit(0)?;
         if parser.rest.is_empty() { Ok(unit) } else { Err(parser.form()) }
     }
@@ -89,7 +90,7 @@ impl Unit {
 
     /// A value in this unit as a value in another; `None` when the dimensions differ. Where both are decimal multiples of
     /// one unit the result is the number nearest to the exact one.
-    pub fn convert(&self, value: f64, to: &Unit) -> Option<f64> {
+    pub fn convert(&self, value: f64, to: &MeasurementUnit) -> Option<f64> {
         let from = self;
         if from.dimension != to.dimension {
             return None;
@@ -105,18 +106,18 @@ impl Unit {
 
     /// The unit of a value, or of a difference of two: that has no zero point of its own, so that 5 degC are 5 K.
     #[must_use]
-    pub fn meant(self, difference: bool) -> Unit {
-        Unit { offset: if difference { 0.0 } else { self.offset }, ..self }
+    pub fn meant(self, difference: bool) -> MeasurementUnit {
+        MeasurementUnit { offset: if difference { 0.0 } else { self.offset }, ..self }
     }
 
-    fn of(symbol: Symbol) -> Unit {
-        let Symbol { dimension, angle, num, den, decade, offset } = symbol;
-        Unit { dimension, angle: 60 * angle, num, den, decade, offset }
+    fn of(symbol: UnitSymbol) -> MeasurementUnit {
+        let UnitSymbol { dimension, angle, num, den, decade, offset } = symbol;
+        MeasurementUnit { dimension, angle: 60 * angle, num, den, decade, offset }
     }
 
     /// The product. Offsets vanish: in `W/degC` a degree is a difference.
-    fn times(self, other: Unit) -> Option<Unit> {
-        Some(Unit {
+    fn times(self, other: MeasurementUnit) -> Option<MeasurementUnit> {
+        Some(MeasurementUnit {
             dimension: self.dimension.times(other.dimension)?,
             angle: self.angle.checked_add(other.angle)?,
             num: self.num * other.num,
@@ -127,7 +128,7 @@ impl Unit {
     }
 
     /// A power; that of a square root for exponents such as 0.5, as in the flow coefficient `m3/(s.Pa0.5)`.
-    fn power(self, exponent: f64) -> Option<Unit> {
+    fn power(self, exponent: f64) -> Option<MeasurementUnit> {
         if exponent == 1.0 {
             return Some(self);
         }
@@ -139,7 +140,7 @@ impl Unit {
         if !num.is_finite() || !den.is_finite() || decade.abs() > f64::from(i16::MAX) {
             return None;
         }
-        Some(Unit {
+        Some(MeasurementUnit {
             dimension: self.dimension.power(exponent)?,
             angle: power_of(self.angle, exponent)?,
             num,
@@ -157,12 +158,12 @@ fn ratio(value: f64, num: f64, den: f64, decade: i32) -> f64 {
 }
 
 /// Reads a number with or without a unit behind it: `5e5`, `210 bar`, `20degC`.
-pub fn quantity(text: &str) -> Result<(f64, Option<Unit>), UnitError> {
+pub fn quantity(text: &str) -> Result<(f64, Option<MeasurementUnit>), UnitError> {
     let text = text.trim();
     let (number, rest) = text.split_at(number_length(text));
     let value = number.parse().map_err(|_| UnitError::NotNumber { text: text.into() })?;
     let rest = rest.trim();
-    let unit = if rest.is_empty() { None } else { Some(Unit::parse(rest)?) };
+    let unit = if rest.is_empty() { None } else { Some(MeasurementUnit::parse(rest)?) };
     Ok((value, unit))
 }
 
@@ -188,12 +189,12 @@ fn number_length(text: &str) -> usize {
 /// Brackets may be nested so deep.
 const DEEPEST: u32 = 50;
 
-struct Parser<'a> {
+struct UnitParser<'a> {
     unit: &'a str,
     rest: &'a str,
 }
 
-impl Parser<'_> {
+impl UnitParser<'_> {
     fn form(&self) -> UnitError {
         let rest = if self.rest.is_empty() { "its end" } else { self.rest };
         UnitError::Form { rest: rest.into(), unit: self.unit.into() }
@@ -207,7 +208,7 @@ impl Parser<'_> {
         found.is_some()
     }
 
-    fn unit(&mut self, depth: u32) -> Result<Unit, UnitError> {
+    fn unit(&mut self, depth: u32) -> Result<MeasurementUnit, UnitError> {
         let mut product = self.factor(depth)?;
         let mut below = false;
         loop {
@@ -226,7 +227,7 @@ impl Parser<'_> {
         }
     }
 
-    fn factor(&mut self, depth: u32) -> Result<Unit, UnitError> {
+    fn factor(&mut self, depth: u32) -> Result<MeasurementUnit, UnitError> {
         let base = if depth < DEEPEST && self.eat('(') {
             let inner = self.unit(depth + 1)?;
             if !self.eat(')') {
@@ -236,11 +237,11 @@ impl Parser<'_> {
         } else {
             self.symbol()?
         };
-        let exponent = if base == Unit::ONE { 1.0 } else { self.exponent()? };
+        let exponent = if base == MeasurementUnit::ONE { 1.0 } else { self.exponent()? };
         base.power(exponent).ok_or_else(|| self.form())
     }
 
-    fn symbol(&mut self) -> Result<Unit, UnitError> {
+    fn symbol(&mut self) -> Result<MeasurementUnit, UnitError> {
         let letter = |c: char| c.is_alphabetic() || matches!(c, '%' | '\u{b0}' | '_');
         let end = self.rest.find(|c| !letter(c)).unwrap_or(self.rest.len());
         let (name, rest) = if self.rest.starts_with('1') { self.rest.split_at(1) } else { self.rest.split_at(end) };
@@ -250,7 +251,7 @@ impl Parser<'_> {
         let symbol =
             symbols::lookup(name).ok_or_else(|| UnitError::Unknown { part: name.into(), unit: self.unit.into() })?;
         self.rest = rest;
-        Ok(Unit::of(symbol))
+        Ok(MeasurementUnit::of(symbol))
     }
 
     /// The exponent behind a symbol or `^`: a whole number, or one with a half (`2`, `-1`, `0.5`); 1 where there is none.
@@ -355,7 +356,7 @@ mod tests {
     #[test]
     fn units_have_factor_and_dimension() {
         for &(text, factor, si) in UNITS {
-            let unit = Unit::parse(text).unwrap_or_else(|e| panic!("{text}: {e}"));
+            let unit = MeasurementUnit::parse(text).unwrap_or_else(|e| panic!("{text}: {e}"));
             assert_eq!((unit.factor(), unit.dimension.to_string().as_str()), (factor, si), "{text}");
         }
     }
@@ -374,10 +375,10 @@ mod tests {
             ("m999999", "the unit `m999999` cannot be read from `its end` on"),
         ];
         for (text, message) in cases {
-            assert_eq!(Unit::parse(text).map_err(|e| e.to_string()), Err(message.to_string()));
+            assert_eq!(MeasurementUnit::parse(text).map_err(|e| e.to_string()), Err(message.to_string()));
         }
         let deep = "(".repeat(100_000);
-        assert!(Unit::parse(&deep).is_err());
+        assert!(MeasurementUnit::parse(&deep).is_err());
     }
 
     #[test]
@@ -394,27 +395,28 @@ mod tests {
             (46.0, "cSt", "m2/s", 46e-6),
         ];
         for (value, from, to, expected) in cases {
-            let (from, to) = (Unit::parse(from).expect("a unit"), Unit::parse(to).expect("a unit"));
+            let (from, to) =
+                (MeasurementUnit::parse(from).expect("a unit"), MeasurementUnit::parse(to).expect("a unit"));
             let converted = from.convert(value, &to).expect("same dimension");
             approx::assert_relative_eq!(converted, expected, max_relative = 2e-15);
         }
-        let fahrenheit = Unit::parse("degF").expect("a unit");
-        let celsius = Unit::parse("degC").expect("a unit");
+        let fahrenheit = MeasurementUnit::parse("degF").expect("a unit");
+        let celsius = MeasurementUnit::parse("degC").expect("a unit");
         approx::assert_relative_eq!(fahrenheit.convert(212.0, &celsius).expect("both"), 100.0, epsilon = 1e-10);
-        assert_eq!(celsius.convert(1.0, &Unit::ONE), None);
+        assert_eq!(celsius.convert(1.0, &MeasurementUnit::ONE), None);
     }
 
     #[test]
     fn quantities() {
-        let bar = Unit::parse("bar").ok();
+        let bar = MeasurementUnit::parse("bar").ok();
         let cases = [
             ("210 bar", 210.0, bar),
             ("210bar", 210.0, bar),
             ("5e5", 5e5, None),
             (" -1.5E-3 ", -1.5e-3, None),
             (".5", 0.5, None),
-            ("2eV", 2.0, Unit::parse("eV").ok()),
-            ("50 %", 50.0, Unit::parse("%").ok()),
+            ("2eV", 2.0, MeasurementUnit::parse("eV").ok()),
+            ("50 %", 50.0, MeasurementUnit::parse("%").ok()),
         ];
         for (text, value, unit) in cases {
             assert_eq!(quantity(text), Ok((value, unit)), "{text}");
@@ -442,14 +444,14 @@ mod tests {
             "1/mol",
         ];
         for text in units {
-            assert!(Unit::parse(text).is_ok(), "{text}");
+            assert!(MeasurementUnit::parse(text).is_ok(), "{text}");
         }
     }
 
     proptest::proptest! {
         #[test]
         fn nothing_panics(text in "[a-zA-Z0-9./()\u{b0}\u{b2}^ -]{0,20}") {
-            let _ = Unit::parse(&text);
+            let _ = MeasurementUnit::parse(&text);
             let _ = quantity(&text);
         }
     }

@@ -5,7 +5,7 @@
 
 mod native;
 
-use bramah_expr::function::External;
+use bramah_expr::function::ExternalFunction;
 use bramah_syntax::world::CompiledC;
 use std::fmt::Write as _;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -17,29 +17,29 @@ const SMALL: f64 = 1e-3;
 
 /// What numbers are in C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum CNumberType {
     /// `double`
     Real,
     /// `int`: integers, truth values, enumerations
     Integer,
 }
 
-impl Kind {
+impl CNumberType {
     fn c(self) -> &'static str {
         match self {
-            Kind::Real => "double",
-            Kind::Integer => "int",
+            CNumberType::Real => "double",
+            CNumberType::Integer => "int",
         }
     }
 }
 
 /// An argument of the C function.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Argument {
+pub enum CArgument {
     /// A number that is given, or an array of so many.
-    Input(Kind, Option<usize>),
+    Input(CNumberType, Option<usize>),
     /// A number that is found, or an array of so many.
-    Output(Kind, Option<usize>),
+    Output(CNumberType, Option<usize>),
     /// A text that is known before the run.
     Text(String),
     /// A number written out.
@@ -50,21 +50,21 @@ pub enum Argument {
 
 /// How a C function is called.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Signature {
+pub struct CSignature {
     /// Its name.
     pub name: String,
     /// What it gives back.
-    pub result: Option<Kind>,
+    pub result: Option<CNumberType>,
     /// Its arguments.
-    pub arguments: Vec<Argument>,
+    pub arguments: Vec<CArgument>,
     /// Text that declares it, from the `Include` annotation; without any it is declared by these types.
     pub include: String,
 }
 
-impl Signature {
+impl CSignature {
     /// How many numbers come out: the result, and the outputs among the arguments.
     pub fn outputs(&self) -> usize {
-        let of = |a: &Argument| if let Argument::Output(_, n) = a { n.unwrap_or(1) } else { 0 };
+        let of = |a: &CArgument| if let CArgument::Output(_, n) = a { n.unwrap_or(1) } else { 0 };
         usize::from(self.result.is_some()) + self.arguments.iter().map(of).sum::<usize>()
     }
 
@@ -79,33 +79,33 @@ impl Signature {
         for (k, argument) in self.arguments.iter().enumerate() {
             let name = format!("a{k}");
             match argument {
-                Argument::Text(text) => {
+                CArgument::Text(text) => {
                     passed.push(literal(text));
                     types.push("const char *".to_owned());
                     continue;
                 }
-                Argument::Number(x) => {
+                CArgument::Number(x) => {
                     passed.push(format!("{x}"));
                     types.push(if x.fract() == 0.0 { "int" } else { "double" }.to_owned());
                     continue;
                 }
-                Argument::Size(n) => {
+                CArgument::Size(n) => {
                     passed.push(format!("{n}"));
                     types.push("size_t".to_owned());
                     continue;
                 }
-                Argument::Input(kind, None) => {
+                CArgument::Input(kind, None) => {
                     let _ = writeln!(before, "  {0} {name} = ({0}) in[{read}];", kind.c());
                     read += 1;
                     types.push(kind.c().to_owned());
                 }
-                Argument::Input(kind, Some(n)) => {
+                CArgument::Input(kind, Some(n)) => {
                     let _ = writeln!(before, "  static {0} {name}[{1}];", kind.c(), n.max(&1));
                     let _ = writeln!(before, "  for (i = 0; i < {n}; i++) {name}[i] = ({}) in[{read} + i];", kind.c());
                     read += n;
                     types.push(format!("const {} *", kind.c()));
                 }
-                Argument::Output(kind, n) => {
+                CArgument::Output(kind, n) => {
                     let count = n.unwrap_or(1);
                     let _ = writeln!(before, "  static {0} {name}[{1}];", kind.c(), count.max(1));
                     let _ = writeln!(after, "  for (i = 0; i < {count}; i++) out[{written} + i] = {name}[i];");
@@ -115,7 +115,7 @@ impl Signature {
             }
             passed.push(name);
         }
-        let result = self.result.map_or("void", Kind::c);
+        let result = self.result.map_or("void", CNumberType::c);
         let parameters = if types.is_empty() { "void".to_owned() } else { types.join(", ") };
         let declared = match self.include.is_empty() {
             true => format!("extern {result} {}({parameters});\n", self.name),
@@ -196,38 +196,38 @@ fn literal(text: &str) -> String {
 ///
 /// # Errors
 /// Why the library cannot be loaded.
-pub fn bind(compiled: CompiledC, signature: &Signature) -> Result<Arc<dyn External>, String> {
+pub fn bind(compiled: CompiledC, signature: &CSignature) -> Result<Arc<dyn ExternalFunction>, String> {
     let smooth = signature.arguments.iter().flat_map(|argument| match argument {
-        Argument::Input(kind, n) => vec![*kind == Kind::Real; n.unwrap_or(1)],
+        CArgument::Input(kind, n) => vec![*kind == CNumberType::Real; n.unwrap_or(1)],
         _ => Vec::new(),
     });
-    let called = Called { native: native::Native::load(compiled)?, last: None, trouble: None };
+    let called = CallState { native: native::WrapperLibrary::load(compiled)?, last: None, trouble: None };
     let (smooth, outputs) = (smooth.collect(), signature.outputs());
-    let library = Arc::new(Library { name: signature.name.clone(), outputs, smooth, called: Mutex::new(called) });
-    Ok(Arc::new(Function { library, by: None }))
+    let library = Arc::new(CLibrary { name: signature.name.clone(), outputs, smooth, called: Mutex::new(called) });
+    Ok(Arc::new(CFunction { library, by: None }))
 }
 
 /// The compiled code.
 #[derive(Debug)]
-struct Library {
+struct CLibrary {
     name: String,
     /// How many numbers come out.
     outputs: usize,
     /// By number that goes in: whether it may take any value.
     smooth: Vec<bool>,
-    called: Mutex<Called>,
+    called: Mutex<CallState>,
 }
 
 /// C code need not be fit for several threads at once.
 #[derive(Debug)]
-struct Called {
-    native: native::Native,
+struct CallState {
+    native: native::WrapperLibrary,
     /// The last call: each output is asked for by itself.
     last: Option<(Vec<u64>, Vec<f64>)>,
     trouble: Option<String>,
 }
 
-impl Library {
+impl CLibrary {
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         let bits: Vec<u64> = args.iter().map(|x| x.to_bits()).collect();
         let mut called = self.called.lock().unwrap_or_else(PoisonError::into_inner);
@@ -245,12 +245,12 @@ impl Library {
 
 /// The function, or its differences by one number that goes in.
 #[derive(Debug)]
-struct Function {
-    library: Arc<Library>,
+struct CFunction {
+    library: Arc<CLibrary>,
     by: Option<usize>,
 }
 
-impl External for Function {
+impl ExternalFunction for CFunction {
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         let Some(by) = self.by else { return self.library.value(output, args) };
         let reach = REACH * args[by].abs().max(SMALL);
@@ -262,9 +262,11 @@ impl External for Function {
         (at(args[by] + reach) - at(args[by] - reach)) / (2.0 * reach)
     }
 
-    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+    fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
         let smooth = self.by.is_none() && self.library.smooth.get(input) == Some(&true);
-        smooth.then(|| Arc::new(Function { library: self.library.clone(), by: Some(input) }) as Arc<dyn External>)
+        smooth.then(|| {
+            Arc::new(CFunction { library: self.library.clone(), by: Some(input) }) as Arc<dyn ExternalFunction>
+        })
     }
 
     fn trouble(&self) -> Option<String> {
@@ -282,15 +284,15 @@ mod tests {
 
     #[test]
     fn arguments_keep_their_order_and_texts_are_written_out() {
-        let signature = Signature {
+        let signature = CSignature {
             name: "f".into(),
-            result: Some(Kind::Real),
+            result: Some(CNumberType::Real),
             arguments: vec![
-                Argument::Input(Kind::Real, None),
-                Argument::Input(Kind::Integer, Some(2)),
-                Argument::Size(2),
-                Argument::Output(Kind::Real, Some(3)),
-                Argument::Text("a\"b".into()),
+                CArgument::Input(CNumberType::Real, None),
+                CArgument::Input(CNumberType::Integer, Some(2)),
+                CArgument::Size(2),
+                CArgument::Output(CNumberType::Real, Some(3)),
+                CArgument::Text("a\"b".into()),
             ],
             include: String::new(),
         };

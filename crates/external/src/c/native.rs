@@ -10,7 +10,7 @@ use std::ffi::{CStr, c_char, c_int};
 
 /// The functions of a wrapper, as long as its library is loaded.
 #[derive(Debug)]
-pub struct Native {
+pub struct WrapperLibrary {
     call: unsafe extern "C" fn(*const f64, *mut f64) -> c_int,
     trouble: unsafe extern "C" fn() -> *const c_char,
     // dropped after the pointers into it
@@ -18,7 +18,7 @@ pub struct Native {
     _compiled: CompiledC,
 }
 
-impl Native {
+impl WrapperLibrary {
     /// Loads the library.
     ///
     /// # Errors
@@ -29,7 +29,7 @@ impl Native {
             let library = Library::new(&compiled.path).map_err(|e| e.to_string())?;
             let call = *library.get(b"bramah_call").map_err(|e| e.to_string())?;
             let trouble = *library.get(b"bramah_trouble").map_err(|e| e.to_string())?;
-            Ok(Native { call, trouble, _library: library, _compiled: compiled })
+            Ok(WrapperLibrary { call, trouble, _library: library, _compiled: compiled })
         }
     }
 

@@ -1,9 +1,9 @@
 //! A unit's file: a ZIP archive with the description, libraries for some machines and resources. What comes out of it is
 //! bounded, and stays below the folder it is unpacked to.
 
-use super::Trouble;
-use super::description::Version;
-use bramah_syntax::world::Folder;
+use super::FmuError;
+use super::description::FmuStandard;
+use bramah_syntax::world::TemporaryFolder;
 use std::borrow::Cow;
 use std::io::{Cursor, Read};
 use std::path::PathBuf;
@@ -16,39 +16,39 @@ const MOST_BYTES: u64 = 4 << 30;
 const MOST_FILES: usize = 100_000;
 
 /// An archive in memory.
-pub struct Archive<'a> {
+pub struct FmuArchive<'a> {
     zip: zip::ZipArchive<Cursor<&'a [u8]>>,
 }
 
 /// What is needed of an archive, on the disk.
 #[derive(Debug)]
-pub struct Unpacked {
+pub struct FmuFiles {
     /// Goes when the last user goes.
-    pub folder: Folder,
+    pub folder: TemporaryFolder,
     /// The library.
     pub library: PathBuf,
     /// The folder of resources, if the unit has one.
     pub resources: Option<PathBuf>,
 }
 
-impl<'a> Archive<'a> {
+impl<'a> FmuArchive<'a> {
     /// Looks at a file.
     ///
     /// # Errors
     /// It is no archive, or holds too much.
-    pub fn open(bytes: &'a [u8]) -> Result<Self, Trouble> {
+    pub fn open(bytes: &'a [u8]) -> Result<Self, FmuError> {
         let zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|why| format!("it is no ZIP archive: {why}"))?;
         if zip.len() > MOST_FILES {
             return Err(format!("it holds {} files, more than {MOST_FILES}", zip.len()).into());
         }
-        Ok(Archive { zip })
+        Ok(FmuArchive { zip })
     }
 
     /// The text of `modelDescription.xml`.
     ///
     /// # Errors
     /// It is missing, damaged or too long.
-    pub fn description(&mut self) -> Result<String, Trouble> {
+    pub fn description(&mut self) -> Result<String, FmuError> {
         let file = self.zip.by_name("modelDescription.xml");
         let file = file.map_err(|why| format!("its `modelDescription.xml` cannot be read: {why}"))?;
         let mut text = String::new();
@@ -64,7 +64,7 @@ impl<'a> Archive<'a> {
     ///
     /// # Errors
     /// There is none.
-    pub fn library(&self, version: Version, identifier: &str) -> Result<[String; 2], Trouble> {
+    pub fn library(&self, version: FmuStandard, identifier: &str) -> Result<[String; 2], FmuError> {
         let names: Vec<String> = self.zip.file_names().filter_map(Result::ok).map(Cow::into_owned).collect();
         let file = format!("{identifier}{}", std::env::consts::DLL_SUFFIX);
         let folder = |platform: &str| format!("binaries/{platform}/");
@@ -79,10 +79,10 @@ impl<'a> Archive<'a> {
     ///
     /// # Errors
     /// There is no library for this machine, a path leads out of the archive, or the disk does not take it.
-    pub fn unpack(&mut self, version: Version, identifier: &str) -> Result<Unpacked, Trouble> {
+    pub fn unpack(&mut self, version: FmuStandard, identifier: &str) -> Result<FmuFiles, FmuError> {
         let [beside, library] = self.library(version, identifier)?;
         let wanted = [&*beside, "resources/"];
-        let folder = Folder::new().map_err(|why| format!("it cannot be unpacked: {why}"))?;
+        let folder = TemporaryFolder::new().map_err(|why| format!("it cannot be unpacked: {why}"))?;
         let (mut left, mut resources) = (MOST_BYTES, None);
         for i in 0..self.zip.len() {
             let file = self.zip.by_index(i).map_err(|why| format!("it is damaged: {why}"))?;
@@ -106,12 +106,12 @@ impl<'a> Archive<'a> {
             }
         }
         let library = folder.path().join(beside).join(library);
-        Ok(Unpacked { folder, library, resources })
+        Ok(FmuFiles { folder, library, resources })
     }
 }
 
 /// The folders in which a library for this machine may lie.
-fn platforms(version: Version) -> Vec<&'static str> {
+fn platforms(version: FmuStandard) -> Vec<&'static str> {
     let (two, three) = match (std::env::consts::OS, std::env::consts::ARCH) {
         ("linux", "x86_64") => ("linux64", "x86_64-linux"),
         ("linux", "aarch64") => ("aarch64-linux", "aarch64-linux"),
@@ -122,12 +122,12 @@ fn platforms(version: Version) -> Vec<&'static str> {
     };
     match version {
         // later tools write the names of 3.0 into units of 2.0 too
-        Version::Two => vec![two, three],
-        Version::Three => vec![three],
+        FmuStandard::Two => vec![two, three],
+        FmuStandard::Three => vec![three],
     }
 }
 
-fn no_library(version: Version, file: &str, names: &[String]) -> Trouble {
+fn no_library(version: FmuStandard, file: &str, names: &[String]) -> FmuError {
     let mut has: Vec<&str> =
         names.iter().filter_map(|n| n.strip_prefix("binaries/")?.split_once('/')).map(|(p, _)| p).collect();
     has.sort_unstable();
@@ -158,13 +158,13 @@ mod tests {
     }
 
     fn here() -> String {
-        format!("binaries/{}/m{}", platforms(Version::Three)[0], std::env::consts::DLL_SUFFIX)
+        format!("binaries/{}/m{}", platforms(FmuStandard::Three)[0], std::env::consts::DLL_SUFFIX)
     }
 
     #[test]
     fn what_is_needed_is_unpacked() {
         let bytes = packed(&[(&here(), b"code"), ("resources/a/b.txt", b"x"), ("sources/m.c", b"")]);
-        let unpacked = Archive::open(&bytes).unwrap().unpack(Version::Three, "m").unwrap();
+        let unpacked = FmuArchive::open(&bytes).unwrap().unpack(FmuStandard::Three, "m").unwrap();
         assert!(unpacked.library.is_file() && unpacked.resources.as_ref().unwrap().join("a/b.txt").is_file());
         assert!(!unpacked.folder.path().join("sources").exists());
         let folder = unpacked.folder.path().to_owned();
@@ -174,9 +174,9 @@ mod tests {
 
     #[test]
     fn damaged_and_hostile_archives_say_why() {
-        let says = |bytes: &[u8]| match Archive::open(bytes) {
+        let says = |bytes: &[u8]| match FmuArchive::open(bytes) {
             Err(why) => why.to_string(),
-            Ok(mut archive) => archive.unpack(Version::Three, "m").unwrap_err().to_string(),
+            Ok(mut archive) => archive.unpack(FmuStandard::Three, "m").unwrap_err().to_string(),
         };
         assert!(says(b"PK no archive").contains("no ZIP archive"));
         assert!(says(&packed(&[("sources/m.c", b"")])).contains("sources only"));
@@ -188,7 +188,7 @@ mod tests {
         cut[at] ^= 0xff;
         let said = says(&cut);
         assert!(said.contains("damaged") || said.contains("archive"), "{said}");
-        let mut empty = Archive::open(&cut).unwrap();
+        let mut empty = FmuArchive::open(&cut).unwrap();
         assert!(empty.description().unwrap_err().to_string().contains("modelDescription.xml"));
     }
 }

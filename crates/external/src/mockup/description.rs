@@ -1,14 +1,14 @@
 //! `modelDescription.xml` of FMI 2.0 and 3.0: what a unit says of itself. Numbers are kept in the unit's own units;
-//! [`Scale`] leads to SI. Source: the standards' sections on the model description.
+//! [`UnitConversion`] leads to SI. Source: the standards' sections on the model description.
 
-use super::Trouble;
-use bramah_expr::units::Unit;
+use super::FmuError;
+use bramah_expr::units::MeasurementUnit;
 use roxmltree::{Document, Node, ParsingOptions};
 use rustc_hash::FxHashMap;
 
 /// A version of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Version {
+pub enum FmuStandard {
     /// 2.0
     Two,
     /// 3.0
@@ -17,26 +17,26 @@ pub enum Version {
 
 /// A way to run a unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum FmuInterface {
     /// The unit brings its own solver and is taken from one communication point to the next.
     CoSimulation,
     /// The unit gives derivatives, which are solved with the circuit.
     ModelExchange,
 }
 
-impl Kind {
+impl FmuInterface {
     /// As the standards call it.
     pub fn name(self) -> &'static str {
         match self {
-            Kind::CoSimulation => "Co-Simulation",
-            Kind::ModelExchange => "Model Exchange",
+            FmuInterface::CoSimulation => "Co-Simulation",
+            FmuInterface::ModelExchange => "Model Exchange",
         }
     }
 }
 
 /// What a unit offers in one of the two ways.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Offer {
+pub struct FmuCapabilities {
     /// The name of its library.
     pub identifier: String,
     /// A process can hold one instance at most.
@@ -48,7 +48,7 @@ pub struct Offer {
 /// The type of a variable as the functions of the standard pass it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the types of the standard by their names")]
-pub enum Passed {
+pub enum FmuDataType {
     Float64,
     Float32,
     Int8,
@@ -63,35 +63,35 @@ pub enum Passed {
     String,
 }
 
-impl Passed {
-    fn of(version: Version, element: &str) -> Option<Self> {
+impl FmuDataType {
+    fn of(version: FmuStandard, element: &str) -> Option<Self> {
         Some(match (version, element) {
-            (Version::Two, "Real") | (Version::Three, "Float64") => Passed::Float64,
-            (Version::Two, "Integer" | "Enumeration") | (Version::Three, "Int32") => Passed::Int32,
-            (_, "Boolean") => Passed::Boolean,
-            (_, "String") => Passed::String,
-            (Version::Two, _) => return None,
-            (_, "Float32") => Passed::Float32,
-            (_, "Int8") => Passed::Int8,
-            (_, "UInt8") => Passed::UInt8,
-            (_, "Int16") => Passed::Int16,
-            (_, "UInt16") => Passed::UInt16,
-            (_, "UInt32") => Passed::UInt32,
-            (_, "Int64" | "Enumeration") => Passed::Int64,
-            (_, "UInt64") => Passed::UInt64,
+            (FmuStandard::Two, "Real") | (FmuStandard::Three, "Float64") => FmuDataType::Float64,
+            (FmuStandard::Two, "Integer" | "Enumeration") | (FmuStandard::Three, "Int32") => FmuDataType::Int32,
+            (_, "Boolean") => FmuDataType::Boolean,
+            (_, "String") => FmuDataType::String,
+            (FmuStandard::Two, _) => return None,
+            (_, "Float32") => FmuDataType::Float32,
+            (_, "Int8") => FmuDataType::Int8,
+            (_, "UInt8") => FmuDataType::UInt8,
+            (_, "Int16") => FmuDataType::Int16,
+            (_, "UInt16") => FmuDataType::UInt16,
+            (_, "UInt32") => FmuDataType::UInt32,
+            (_, "Int64" | "Enumeration") => FmuDataType::Int64,
+            (_, "UInt64") => FmuDataType::UInt64,
             _ => return None,
         })
     }
 
     /// Whether it is a number with a unit.
     pub fn is_real(self) -> bool {
-        matches!(self, Passed::Float64 | Passed::Float32)
+        matches!(self, FmuDataType::Float64 | FmuDataType::Float32)
     }
 }
 
 /// From numbers of the unit to SI: `factor*x + offset`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scale {
+pub struct UnitConversion {
     /// The SI unit as Modelica writes it; empty where none is known.
     pub si: String,
     /// The unit in which numbers are shown.
@@ -102,15 +102,15 @@ pub struct Scale {
     pub offset: f64,
 }
 
-impl Default for Scale {
+impl Default for UnitConversion {
     fn default() -> Self {
-        Scale { si: String::new(), shown: String::new(), factor: 1.0, offset: 0.0 }
+        UnitConversion { si: String::new(), shown: String::new(), factor: 1.0, offset: 0.0 }
     }
 }
 
 /// What a variable is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Causality {
+pub enum FmuCausality {
     /// Set before the start.
     Parameter,
     /// Set from outside.
@@ -123,7 +123,7 @@ pub enum Causality {
 
 /// A variable of a unit.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Variable {
+pub struct FmuVariable {
     /// Its name.
     pub name: String,
     /// What it means.
@@ -131,9 +131,9 @@ pub struct Variable {
     /// The number by which functions name it.
     pub reference: u32,
     /// Its type.
-    pub passed: Passed,
+    pub passed: FmuDataType,
     /// What it is for.
-    pub causality: Causality,
+    pub causality: FmuCausality,
     /// Whether it changes between events.
     pub continuous: bool,
     /// Sizes, empty for a scalar.
@@ -145,22 +145,22 @@ pub struct Variable {
     /// Least and greatest value, and its usual size.
     pub limits: [Option<f64>; 3],
     /// To SI.
-    pub scale: Scale,
+    pub scale: UnitConversion,
     /// Of a derivative: the state, as the description names it, then as an index.
     state: Option<usize>,
     /// Sizes as the description has them.
-    sizes: Vec<Size>,
+    sizes: Vec<FmuDimension>,
 }
 
 /// One size of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Size {
+enum FmuDimension {
     Given(usize),
     /// The start of the variable with this value reference.
     Of(u32),
 }
 
-impl Variable {
+impl FmuVariable {
     /// How many numbers it holds.
     pub fn size(&self) -> usize {
         self.dims.iter().product()
@@ -169,9 +169,9 @@ impl Variable {
 
 /// What a unit says of itself.
 #[derive(Clone, Debug)]
-pub struct Description {
+pub struct FmuDescription {
     /// Of the standard.
-    pub version: Version,
+    pub version: FmuStandard,
     /// The model.
     pub name: String,
     /// What it means.
@@ -181,11 +181,11 @@ pub struct Description {
     /// What the library wants to see.
     pub token: String,
     /// As Co-Simulation.
-    pub co_simulation: Option<Offer>,
+    pub co_simulation: Option<FmuCapabilities>,
     /// As Model Exchange.
-    pub model_exchange: Option<Offer>,
+    pub model_exchange: Option<FmuCapabilities>,
     /// All variables.
-    pub variables: Vec<Variable>,
+    pub variables: Vec<FmuVariable>,
     /// Continuous states with their derivatives, as indices.
     pub states: Vec<(usize, usize)>,
     /// How many event indicators there are.
@@ -197,12 +197,12 @@ pub struct Description {
 /// Variables of a unit at most; beyond, a size is probably mistaken.
 const MOST_VALUES: usize = 1_000_000;
 
-impl Description {
+impl FmuDescription {
     /// Reads the text.
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn read(text: &str) -> Result<Self, Trouble> {
+    pub fn read(text: &str) -> Result<Self, FmuError> {
         let options = ParsingOptions { nodes_limit: 10_000_000, ..ParsingOptions::default() };
         let tree = Document::parse_with_options(text, options)
             .map_err(|why| format!("its `modelDescription.xml` is no valid XML: {why}"))?;
@@ -211,12 +211,12 @@ impl Description {
             return Err("its `modelDescription.xml` describes no unit".into());
         }
         let version = match root.attribute("fmiVersion") {
-            Some("2.0") => Version::Two,
-            Some(v) if v.starts_with("3.") => Version::Three,
+            Some("2.0") => FmuStandard::Two,
+            Some(v) if v.starts_with("3.") => FmuStandard::Three,
             Some(other) => return Err(format!("it follows FMI {other}; bramah takes 2.0 and 3.0").into()),
             None => return Err("its `modelDescription.xml` names no version of FMI".into()),
         };
-        let token = if version == Version::Two { "guid" } else { "instantiationToken" };
+        let token = if version == FmuStandard::Two { "guid" } else { "instantiationToken" };
         let types = types(root, version);
         let mut variables = Vec::new();
         for node in child(root, "ModelVariables").into_iter().flat_map(elements) {
@@ -228,7 +228,7 @@ impl Description {
         let number = |node: Option<Node<'_, '_>>, name| node?.attribute(name)?.trim().parse::<f64>().ok();
         let step = number(child(root, "DefaultExperiment"), "stepSize");
         let step = step.or_else(|| number(co_simulation, "fixedInternalStepSize"));
-        Ok(Description {
+        Ok(FmuDescription {
             version,
             name: root.attribute("modelName").unwrap_or("unit").to_owned(),
             description: root.attribute("description").unwrap_or_default().to_owned(),
@@ -244,23 +244,25 @@ impl Description {
     }
 
     /// What it offers in one way.
-    pub fn offer(&self, kind: Kind) -> Option<&Offer> {
+    pub fn offer(&self, kind: FmuInterface) -> Option<&FmuCapabilities> {
         match kind {
-            Kind::CoSimulation => self.co_simulation.as_ref(),
-            Kind::ModelExchange => self.model_exchange.as_ref(),
+            FmuInterface::CoSimulation => self.co_simulation.as_ref(),
+            FmuInterface::ModelExchange => self.model_exchange.as_ref(),
         }
     }
 
     /// Variables of a causality, as indices.
-    pub fn of(&self, causality: Causality) -> Vec<usize> {
+    pub fn of(&self, causality: FmuCausality) -> Vec<usize> {
         let all = self.variables.iter().enumerate();
-        all.filter(|(_, v)| v.causality == causality && v.passed != Passed::String).map(|(i, _)| i).collect()
+        all.filter(|(_, v)| v.causality == causality && v.passed != FmuDataType::String).map(|(i, _)| i).collect()
     }
 
     /// Texts that may be set.
     pub fn texts(&self) -> Vec<usize> {
         let all = self.variables.iter().enumerate();
-        let is = |v: &Variable| v.causality == Causality::Parameter && v.passed == Passed::String && v.dims.is_empty();
+        let is = |v: &FmuVariable| {
+            v.causality == FmuCausality::Parameter && v.passed == FmuDataType::String && v.dims.is_empty()
+        };
         all.filter(|(_, v)| is(v)).map(|(i, _)| i).collect()
     }
 }
@@ -277,13 +279,13 @@ fn flag(node: Node<'_, '_>, name: &str) -> bool {
     matches!(node.attribute(name), Some("true" | "1"))
 }
 
-fn offer(node: Node<'_, '_>) -> Result<Offer, Trouble> {
+fn offer(node: Node<'_, '_>) -> Result<FmuCapabilities, FmuError> {
     let identifier = node.attribute("modelIdentifier").unwrap_or_default().to_owned();
     let letter = |c: char| c.is_alphanumeric() || c == '_';
     if identifier.is_empty() || !identifier.chars().all(letter) {
         return Err(format!("`modelIdentifier` is `{identifier}`, which names no library").into());
     }
-    Ok(Offer {
+    Ok(FmuCapabilities {
         identifier,
         only_once: flag(node, "canBeInstantiatedOnlyOncePerProcess"),
         derivatives: flag(node, "providesDirectionalDerivative") || flag(node, "providesDirectionalDerivatives"),
@@ -291,30 +293,34 @@ fn offer(node: Node<'_, '_>) -> Result<Offer, Trouble> {
 }
 
 /// Type definitions by their names, and units by theirs.
-struct Types<'a, 'b> {
+struct TypeDefinitions<'a, 'b> {
     types: FxHashMap<&'a str, Node<'a, 'b>>,
     units: FxHashMap<&'a str, Node<'a, 'b>>,
 }
 
-fn types<'a, 'b>(root: Node<'a, 'b>, version: Version) -> Types<'a, 'b> {
+fn types<'a, 'b>(root: Node<'a, 'b>, version: FmuStandard) -> TypeDefinitions<'a, 'b> {
     let all = child(root, "TypeDefinitions").into_iter().flat_map(elements);
     // in FMI 2.0 the attributes stand in an element inside
     let types = all.filter_map(|t| {
-        let inner = if version == Version::Two { elements(t).next()? } else { t };
+        let inner = if version == FmuStandard::Two { elements(t).next()? } else { t };
         Some((t.attribute("name")?, inner))
     });
     let units = child(root, "UnitDefinitions").into_iter().flat_map(elements);
-    Types { types: types.collect(), units: units.filter_map(|u| Some((u.attribute("name")?, u))).collect() }
+    TypeDefinitions { types: types.collect(), units: units.filter_map(|u| Some((u.attribute("name")?, u))).collect() }
 }
 
-fn variable(node: Node<'_, '_>, version: Version, types: &Types<'_, '_>) -> Result<Option<Variable>, Trouble> {
+fn variable(
+    node: Node<'_, '_>,
+    version: FmuStandard,
+    types: &TypeDefinitions<'_, '_>,
+) -> Result<Option<FmuVariable>, FmuError> {
     let name = node.attribute("name").ok_or("a variable has no name")?.to_owned();
     let inner = match version {
-        Version::Two => elements(node).find(|c| Passed::of(version, c.tag_name().name()).is_some()),
-        Version::Three => Some(node),
+        FmuStandard::Two => elements(node).find(|c| FmuDataType::of(version, c.tag_name().name()).is_some()),
+        FmuStandard::Three => Some(node),
     };
     let Some(inner) = inner else { return Ok(None) };
-    let Some(passed) = Passed::of(version, inner.tag_name().name()) else { return Ok(None) };
+    let Some(passed) = FmuDataType::of(version, inner.tag_name().name()) else { return Ok(None) };
     let declared = inner.attribute("declaredType").and_then(|t| types.types.get(t).copied());
     let said = |key: &str| inner.attribute(key).or_else(|| declared.and_then(|d| d.attribute(key)));
     let wrong = |what: &str, text: &str| format!("`{text}` is no {what} of the variable `{name}`");
@@ -322,14 +328,14 @@ fn variable(node: Node<'_, '_>, version: Version, types: &Types<'_, '_>) -> Resu
     let reference = node.attribute("valueReference").unwrap_or_default();
     let reference = reference.trim().parse().map_err(|_| wrong("value reference", reference))?;
     let causality = match node.attribute("causality") {
-        Some("parameter") => Causality::Parameter,
-        Some("input") => Causality::Input,
-        Some("output") => Causality::Output,
-        _ => Causality::Other,
+        Some("parameter") => FmuCausality::Parameter,
+        Some("input") => FmuCausality::Input,
+        Some("output") => FmuCausality::Output,
+        _ => FmuCausality::Other,
     };
     let start = inner.attribute("start").unwrap_or_default();
     let start = match passed {
-        Passed::String => Vec::new(),
+        FmuDataType::String => Vec::new(),
         _ => start
             .split_whitespace()
             .map(|s| value(s).ok_or_else(|| wrong("start value", s)))
@@ -338,13 +344,13 @@ fn variable(node: Node<'_, '_>, version: Version, types: &Types<'_, '_>) -> Resu
     let text = child(inner, "Start").and_then(|s| s.attribute("value")).or_else(|| inner.attribute("start"));
     let dims = elements(inner).filter(|c| c.tag_name().name() == "Dimension");
     let sizes = dims.map(|d| match (d.attribute("start"), d.attribute("valueReference").unwrap_or_default()) {
-        (Some(n), _) => n.trim().parse().map(Size::Given).map_err(|_| wrong("size", n)),
-        (None, n) => n.trim().parse().map(Size::Of).map_err(|_| wrong("size", n)),
+        (Some(n), _) => n.trim().parse().map(FmuDimension::Given).map_err(|_| wrong("size", n)),
+        (None, n) => n.trim().parse().map(FmuDimension::Of).map_err(|_| wrong("size", n)),
     });
     let unit = said("unit").unwrap_or_default();
-    let scale = if passed.is_real() { scale(unit, said("displayUnit"), types)? } else { Scale::default() };
+    let scale = if passed.is_real() { scale(unit, said("displayUnit"), types)? } else { UnitConversion::default() };
     let discrete = matches!(node.attribute("variability"), Some("discrete" | "constant" | "fixed" | "tunable"));
-    Ok(Some(Variable {
+    Ok(Some(FmuVariable {
         description: node.attribute("description").unwrap_or_default().to_owned(),
         reference,
         passed,
@@ -353,7 +359,7 @@ fn variable(node: Node<'_, '_>, version: Version, types: &Types<'_, '_>) -> Resu
         dims: Vec::new(),
         sizes: sizes.collect::<Result<_, String>>()?,
         start,
-        text: if passed == Passed::String { text.unwrap_or_default().to_owned() } else { String::new() },
+        text: if passed == FmuDataType::String { text.unwrap_or_default().to_owned() } else { String::new() },
         limits: ["min", "max", "nominal"].map(number),
         scale,
         state: inner.attribute("derivative").and_then(|d| d.trim().parse().ok()),
@@ -370,24 +376,24 @@ fn value(text: &str) -> Option<f64> {
 }
 
 /// Puts in what refers to other variables: states of derivatives, and sizes.
-fn resolve(variables: &mut [Variable], version: Version) -> Result<(), Trouble> {
+fn resolve(variables: &mut [FmuVariable], version: FmuStandard) -> Result<(), FmuError> {
     let at: FxHashMap<u32, usize> = variables.iter().enumerate().map(|(i, v)| (v.reference, i)).collect();
     let count = variables.len();
     for v in variables.iter_mut() {
         v.state = match (v.state, version) {
-            (Some(index), Version::Two) => {
+            (Some(index), FmuStandard::Two) => {
                 Some(index.checked_sub(1).filter(|i| *i < count).ok_or_else(|| no_state(&v.name))?)
             }
-            (Some(reference), Version::Three) => {
+            (Some(reference), FmuStandard::Three) => {
                 let found = u32::try_from(reference).ok().and_then(|r| at.get(&r).copied());
                 Some(found.ok_or_else(|| no_state(&v.name))?)
             }
             (None, _) => None,
         };
     }
-    let size = |size: &Size| match *size {
-        Size::Given(n) => Some(n),
-        Size::Of(reference) => {
+    let size = |size: &FmuDimension| match *size {
+        FmuDimension::Given(n) => Some(n),
+        FmuDimension::Of(reference) => {
             let start = *variables[*at.get(&reference)?].start.first()?;
             (0.0..1e9).contains(&start).then_some(start as usize)
         }
@@ -414,27 +420,27 @@ fn resolve(variables: &mut [Variable], version: Version) -> Result<(), Trouble> 
     Ok(())
 }
 
-fn no_state(name: &str) -> Trouble {
+fn no_state(name: &str) -> FmuError {
     format!("`{name}` is the derivative of a variable that is not there").into()
 }
 
 /// Pairs of state and derivative, and the number of event indicators.
 fn structure(
     root: Node<'_, '_>,
-    version: Version,
-    variables: &[Variable],
-) -> Result<(Vec<(usize, usize)>, usize), Trouble> {
+    version: FmuStandard,
+    variables: &[FmuVariable],
+) -> Result<(Vec<(usize, usize)>, usize), FmuError> {
     let structure = child(root, "ModelStructure");
     let at: FxHashMap<u32, usize> = variables.iter().enumerate().map(|(i, v)| (v.reference, i)).collect();
     let named = |node: Node<'_, '_>| -> Option<usize> {
         match version {
-            Version::Two => node.attribute("index")?.trim().parse::<usize>().ok()?.checked_sub(1),
-            Version::Three => at.get(&node.attribute("valueReference")?.trim().parse::<u32>().ok()?).copied(),
+            FmuStandard::Two => node.attribute("index")?.trim().parse::<usize>().ok()?.checked_sub(1),
+            FmuStandard::Three => at.get(&node.attribute("valueReference")?.trim().parse::<u32>().ok()?).copied(),
         }
     };
     let derivatives: Vec<Node<'_, '_>> = match version {
-        Version::Two => structure.and_then(|s| child(s, "Derivatives")).into_iter().flat_map(elements).collect(),
-        Version::Three => structure
+        FmuStandard::Two => structure.and_then(|s| child(s, "Derivatives")).into_iter().flat_map(elements).collect(),
+        FmuStandard::Three => structure
             .into_iter()
             .flat_map(elements)
             .filter(|n| n.tag_name().name() == "ContinuousStateDerivative")
@@ -446,10 +452,10 @@ fn structure(
         states.push(found.ok_or("a derivative of its `ModelStructure` is the derivative of nothing")?);
     }
     let indicators = match version {
-        Version::Two => root.attribute("numberOfEventIndicators").and_then(|n| n.trim().parse().ok()).unwrap_or(0),
-        Version::Three => {
+        FmuStandard::Two => root.attribute("numberOfEventIndicators").and_then(|n| n.trim().parse().ok()).unwrap_or(0),
+        FmuStandard::Three => {
             let all = structure.into_iter().flat_map(elements).filter(|n| n.tag_name().name() == "EventIndicator");
-            let sizes = all.map(|n| named(n).and_then(|i| variables.get(i)).map_or(1, Variable::size));
+            let sizes = all.map(|n| named(n).and_then(|i| variables.get(i)).map_or(1, FmuVariable::size));
             sizes.sum()
         }
     };
@@ -463,11 +469,11 @@ fn structure(
 const BASE: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
 
 /// How a unit of the description leads to SI: by its definition there, or else by its name.
-fn scale(unit: &str, shown: Option<&str>, types: &Types<'_, '_>) -> Result<Scale, Trouble> {
+fn scale(unit: &str, shown: Option<&str>, types: &TypeDefinitions<'_, '_>) -> Result<UnitConversion, FmuError> {
     if unit.is_empty() {
-        return Ok(Scale::default());
+        return Ok(UnitConversion::default());
     }
-    let known = Unit::parse(unit).ok();
+    let known = MeasurementUnit::parse(unit).ok();
     let base = types.units.get(unit).and_then(|u| child(*u, "BaseUnit"));
     let number = |key: &str, otherwise: f64| {
         let text = base.and_then(|b| b.attribute(key));
@@ -488,17 +494,18 @@ fn scale(unit: &str, shown: Option<&str>, types: &Types<'_, '_>) -> Result<Scale
     let (Some(factor), Some(offset)) = (factor.filter(|f| *f != 0.0), offset) else {
         return Err(format!("the definition of the unit `{unit}` cannot be read").into());
     };
-    let coherent =
-        |u: &Unit| u.factor() == 1.0 && u.to_si(0.0) == 0.0 && u.exponents().map(|e| e.to_vec()) == exponents;
+    let coherent = |u: &MeasurementUnit| {
+        u.factor() == 1.0 && u.to_si(0.0) == 0.0 && u.exponents().map(|e| e.to_vec()) == exponents
+    };
     let si = match &exponents {
         _ if known.as_ref().is_some_and(coherent) => unit.to_owned(),
         Some(exponents) => product(exponents),
         None => String::new(),
     };
-    let can_show = |name: &&str| !si.is_empty() && Unit::parse(name).is_ok();
+    let can_show = |name: &&str| !si.is_empty() && MeasurementUnit::parse(name).is_ok();
     let shown = shown.filter(can_show).or(Some(unit).filter(can_show)).unwrap_or_default();
     let shown = if shown == si { String::new() } else { shown.to_owned() };
-    Ok(Scale { si, shown, factor, offset })
+    Ok(UnitConversion { si, shown, factor, offset })
 }
 
 /// Units with a name that stands for one quantity only.
@@ -506,7 +513,7 @@ const NAMED: [&str; 9] = ["Pa", "N", "W", "V", "Ohm", "F", "H", "T", "Wb"];
 
 /// `kg.m2.s-1`, or its name where it has one.
 fn product(exponents: &[i16]) -> String {
-    let is = |name: &&str| Unit::parse(name).is_ok_and(|u| u.exponents().is_some_and(|e| e == *exponents));
+    let is = |name: &&str| MeasurementUnit::parse(name).is_ok_and(|u| u.exponents().is_some_and(|e| e == *exponents));
     if let Some(name) = NAMED.into_iter().find(is) {
         return name.to_owned();
     }
@@ -531,7 +538,7 @@ mod tests {
     }
 
     fn wrong(text: &str) -> String {
-        Description::read(text).unwrap_err().to_string()
+        FmuDescription::read(text).unwrap_err().to_string()
     }
 
     #[test]
@@ -546,7 +553,7 @@ mod tests {
               <ScalarVariable name="on" valueReference="0" causality="parameter"><Boolean start="true"/></ScalarVariable>
             </ModelVariables><ModelStructure><Derivatives><Unknown index="3"/></Derivatives></ModelStructure>"#,
         );
-        let d = Description::read(&text).unwrap();
+        let d = FmuDescription::read(&text).unwrap();
         let p = &d.variables[0];
         assert_eq!((p.scale.si.as_str(), p.scale.factor, p.scale.shown.as_str()), ("Pa", 1e5, "bar"));
         assert_eq!((p.limits[1], p.start.as_slice(), p.reference), (Some(300.0), &[2.0][..], 7));
@@ -561,7 +568,7 @@ mod tests {
             <Float64 name="u" valueReference="2" causality="input" start="1 2 3"><Dimension valueReference="1"/></Float64>
             <Float64 name="A" valueReference="3" start="5"><Dimension start="2"/><Dimension start="2"/></Float64>
             <Clock name="c" valueReference="4"/></ModelVariables></fmiModelDescription>"#;
-        let d = Description::read(text).unwrap();
+        let d = FmuDescription::read(text).unwrap();
         assert_eq!((d.variables[1].dims.as_slice(), d.variables.len()), (&[3][..], 3));
         assert_eq!(d.variables[2].start, [5.0; 4]);
     }

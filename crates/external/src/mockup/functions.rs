@@ -1,8 +1,8 @@
 //! A unit as the functions that its Modelica text calls (`text`), each a pure function of its arguments.
 
-use super::Trouble;
-use super::pool::Pool;
-use bramah_expr::function::External;
+use super::FmuError;
+use super::pool::InstancePool;
+use bramah_expr::function::ExternalFunction;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -15,7 +15,7 @@ const STEP: f64 = 6e-6;
 
 /// Which of the functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Task {
+pub enum FmuOperation {
     /// Parameters to the first state: `state`.
     Begin,
     /// At the start: time, inputs to continuous states and discrete outputs.
@@ -29,29 +29,29 @@ pub enum Task {
 }
 
 /// A result, or why the unit has failed.
-type Found = Result<Arc<[f64]>, Trouble>;
+type FmuResult = Result<Arc<[f64]>, FmuError>;
 
 /// A function of a unit, or its derivative by one argument.
-pub struct Function {
-    pool: Arc<Pool>,
-    task: Task,
+pub struct FmuFunction {
+    pool: Arc<InstancePool>,
+    task: FmuOperation,
     by: Option<usize>,
     /// The last results, by the bits of their arguments.
-    known: Mutex<VecDeque<(Box<[u64]>, Found)>>,
+    known: Mutex<VecDeque<(Box<[u64]>, FmuResult)>>,
     /// What went wrong with the last call.
-    trouble: Mutex<Option<Trouble>>,
+    trouble: Mutex<Option<FmuError>>,
 }
 
-impl std::fmt::Debug for Function {
+impl std::fmt::Debug for FmuFunction {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{:?} of {}", self.task, self.pool.description().name)
     }
 }
 
-impl Function {
+impl FmuFunction {
     /// One of the functions.
-    pub fn new(pool: Arc<Pool>, task: Task) -> Self {
-        Function { pool, task, by: None, known: Mutex::default(), trouble: Mutex::default() }
+    pub fn new(pool: Arc<InstancePool>, task: FmuOperation) -> Self {
+        FmuFunction { pool, task, by: None, known: Mutex::default(), trouble: Mutex::default() }
     }
 
     fn results(&self, args: &[f64]) -> Option<Arc<[f64]>> {
@@ -65,9 +65,10 @@ impl Function {
         found.ok()
     }
 
-    fn found(&self, args: &[f64]) -> Found {
+    fn found(&self, args: &[f64]) -> FmuResult {
         let bits: Box<[u64]> = args.iter().map(|x| x.to_bits()).collect();
-        let known = |all: &VecDeque<(Box<[u64]>, Found)>| all.iter().rev().find(|k| k.0 == bits).map(|k| k.1.clone());
+        let known =
+            |all: &VecDeque<(Box<[u64]>, FmuResult)>| all.iter().rev().find(|k| k.0 == bits).map(|k| k.1.clone());
         if let Some(found) = known(&self.known.lock().unwrap_or_else(PoisonError::into_inner)) {
             return found;
         }
@@ -84,16 +85,17 @@ impl Function {
     }
 }
 
-impl External for Function {
+impl ExternalFunction for FmuFunction {
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         self.results(args).and_then(|all| all.get(output).copied()).unwrap_or(f64::NAN)
     }
 
-    fn partial(&self, input: usize) -> Option<Arc<dyn External>> {
+    fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
         // the state is a name, and what happens at events has no slope
-        let smooth = matches!(self.task, Task::Evaluate | Task::Start) && input > 0;
+        let smooth = matches!(self.task, FmuOperation::Evaluate | FmuOperation::Start) && input > 0;
         (self.by.is_none() && smooth).then(|| {
-            Arc::new(Function { by: Some(input), ..Function::new(self.pool.clone(), self.task) }) as Arc<dyn External>
+            Arc::new(FmuFunction { by: Some(input), ..FmuFunction::new(self.pool.clone(), self.task) })
+                as Arc<dyn ExternalFunction>
         })
     }
 
@@ -112,15 +114,15 @@ fn number(state: f64) -> u64 {
     state as u64
 }
 
-fn compute(pool: &Pool, task: Task, args: &[f64]) -> Result<Vec<f64>, Trouble> {
+fn compute(pool: &InstancePool, task: FmuOperation, args: &[f64]) -> Result<Vec<f64>, FmuError> {
     let description = pool.description();
-    if task == Task::Begin {
+    if task == FmuOperation::Begin {
         return Ok(vec![pool.root(args) as f64]);
     }
     let state = number(args[0]);
     let n = description.states.len();
     match task {
-        Task::Begin | Task::Start => pool.look(state, args[1], &[], &args[2..], |instance| {
+        FmuOperation::Begin | FmuOperation::Start => pool.look(state, args[1], &[], &args[2..], |instance| {
             let mut found = vec![0.0; n];
             if n > 0 {
                 instance.states(&mut found)?;
@@ -128,7 +130,7 @@ fn compute(pool: &Pool, task: Task, args: &[f64]) -> Result<Vec<f64>, Trouble> {
             pool.read(instance, &discrete(pool), &mut found)?;
             Ok(found)
         }),
-        Task::Advance => {
+        FmuOperation::Advance => {
             let (from, to, inputs) = (args[1], args[2], &args[3..]);
             let after = if to > from { pool.step(state, from, to, inputs)? } else { state };
             let mut found = vec![after as f64];
@@ -139,7 +141,7 @@ fn compute(pool: &Pool, task: Task, args: &[f64]) -> Result<Vec<f64>, Trouble> {
             found.extend(outputs);
             Ok(found)
         }
-        Task::Evaluate => pool.look(state, args[1], &args[2..2 + n], &args[2 + n..], |instance| {
+        FmuOperation::Evaluate => pool.look(state, args[1], &args[2..2 + n], &args[2 + n..], |instance| {
             let mut found = vec![0.0; n + description.indicators];
             if n > 0 {
                 instance.derivatives(&mut found[..n])?;
@@ -150,7 +152,7 @@ fn compute(pool: &Pool, task: Task, args: &[f64]) -> Result<Vec<f64>, Trouble> {
             pool.read(instance, &pool.outputs, &mut found)?;
             Ok(found)
         }),
-        Task::Event => {
+        FmuOperation::Event => {
             let (time, states, inputs) = (args[1], &args[2..2 + n], &args[2 + n..]);
             let happened = pool.event(state, time, states, inputs)?;
             let mut found = vec![happened.state as f64, happened.next.unwrap_or(NEVER)];
@@ -166,19 +168,19 @@ fn compute(pool: &Pool, task: Task, args: &[f64]) -> Result<Vec<f64>, Trouble> {
 }
 
 /// Outputs that change at events only.
-pub fn discrete(pool: &Pool) -> Vec<usize> {
+pub fn discrete(pool: &InstancePool) -> Vec<usize> {
     let all = pool.outputs.iter().copied();
     all.filter(|&i| !pool.description().variables[i].continuous).collect()
 }
 
 /// By the unit's own derivatives where it has them, else by central differences.
-fn derivative(pool: &Pool, task: Task, by: usize, args: &[f64]) -> Result<Vec<f64>, Trouble> {
-    if task == Task::Evaluate
+fn derivative(pool: &InstancePool, task: FmuOperation, by: usize, args: &[f64]) -> Result<Vec<f64>, FmuError> {
+    if task == FmuOperation::Evaluate
         && let Some(found) = directional(pool, by, args)
     {
         return found;
     }
-    let states = if task == Task::Evaluate { pool.description().states.len() } else { 0 };
+    let states = if task == FmuOperation::Evaluate { pool.description().states.len() } else { 0 };
     let size = args[by].abs().max(nominal(pool, states, by));
     let at = |x: f64| {
         let mut moved = args.to_vec();
@@ -191,7 +193,7 @@ fn derivative(pool: &Pool, task: Task, by: usize, args: &[f64]) -> Result<Vec<f6
 }
 
 /// The usual size of an argument, where the unit says it; behind state and time come so many states, then inputs.
-fn nominal(pool: &Pool, n: usize, argument: usize) -> f64 {
+fn nominal(pool: &InstancePool, n: usize, argument: usize) -> f64 {
     let description = pool.description();
     let of = |i: usize| description.variables[i].limits[2].map_or(1.0, f64::abs);
     match argument {
@@ -205,7 +207,7 @@ fn nominal(pool: &Pool, n: usize, argument: usize) -> f64 {
 }
 
 /// `None` where the unit does not offer it: for time, event indicators, arrays, and before its start.
-fn directional(pool: &Pool, by: usize, args: &[f64]) -> Option<Result<Vec<f64>, Trouble>> {
+fn directional(pool: &InstancePool, by: usize, args: &[f64]) -> Option<Result<Vec<f64>, FmuError>> {
     let description = pool.description();
     let n = description.states.len();
     let scalar = |i: &usize| description.variables[*i].dims.is_empty();

@@ -12,77 +12,77 @@ mod native;
 mod pool;
 mod text;
 
-pub use description::Kind;
-pub use functions::{Function, Task};
-pub use pool::Pool;
+pub use description::FmuInterface;
+pub use functions::{FmuFunction, FmuOperation};
+pub use pool::InstancePool;
 
-use archive::Archive;
-use description::{Description, Offer};
-use native::Code;
+use archive::FmuArchive;
+use description::{FmuCapabilities, FmuDescription};
+use native::FmuLibrary;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 /// Why a unit cannot be used, as the end of a sentence about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Trouble(String);
+pub struct FmuError(String);
 
-impl fmt::Display for Trouble {
+impl fmt::Display for FmuError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
 }
 
-impl From<String> for Trouble {
+impl From<String> for FmuError {
     fn from(text: String) -> Self {
-        Trouble(text)
+        FmuError(text)
     }
 }
 
-impl From<&str> for Trouble {
+impl From<&str> for FmuError {
     fn from(text: &str) -> Self {
-        Trouble(text.to_owned())
+        FmuError(text.to_owned())
     }
 }
 
 /// A unit that was read, for one of its kinds. Its library is loaded when it is first needed: whoever only looks at a
 /// circuit runs nothing of it.
-pub struct MockUp {
+pub struct ImportedFmu {
     bytes: Vec<u8>,
-    description: Description,
-    kind: Kind,
+    description: FmuDescription,
+    kind: FmuInterface,
     /// What it offers as this kind.
-    offer: Offer,
-    code: OnceLock<Result<Arc<Code>, Trouble>>,
+    offer: FmuCapabilities,
+    code: OnceLock<Result<Arc<FmuLibrary>, FmuError>>,
 }
 
-impl MockUp {
+impl ImportedFmu {
     /// Reads a unit. `kind` is `auto`, `cs` or `me`; `auto` is Co-Simulation where the unit has it.
     ///
     /// # Errors
     /// What is wrong with the file, or that it has no such kind.
-    pub fn open(bytes: Vec<u8>, kind: &str) -> Result<Self, Trouble> {
-        let mut archive = Archive::open(&bytes)?;
-        let description = Description::read(&archive.description()?)?;
+    pub fn open(bytes: Vec<u8>, kind: &str) -> Result<Self, FmuError> {
+        let mut archive = FmuArchive::open(&bytes)?;
+        let description = FmuDescription::read(&archive.description()?)?;
         let has = |kind| description.offer(kind).is_some();
         let kind = match kind {
-            "auto" if has(Kind::CoSimulation) => Kind::CoSimulation,
-            "auto" if has(Kind::ModelExchange) => Kind::ModelExchange,
+            "auto" if has(FmuInterface::CoSimulation) => FmuInterface::CoSimulation,
+            "auto" if has(FmuInterface::ModelExchange) => FmuInterface::ModelExchange,
             "auto" => return Err("it offers neither Co-Simulation nor Model Exchange".into()),
-            "cs" => Kind::CoSimulation,
-            "me" => Kind::ModelExchange,
+            "cs" => FmuInterface::CoSimulation,
+            "me" => FmuInterface::ModelExchange,
             other => return Err(format!("`kind` is \"auto\", \"cs\" or \"me\", not \"{other}\"").into()),
         };
         let offer = description.offer(kind).cloned();
         let offer = offer.ok_or_else(|| format!("it does not offer {}", kind.name()))?;
         archive.library(description.version, &offer.identifier)?;
-        Ok(MockUp { bytes, description, kind, offer, code: OnceLock::new() })
+        Ok(ImportedFmu { bytes, description, kind, offer, code: OnceLock::new() })
     }
 
     /// Its library, from the first use on.
-    fn code(&self) -> Result<Arc<Code>, Trouble> {
+    fn code(&self) -> Result<Arc<FmuLibrary>, FmuError> {
         let load = || {
-            let unpacked = Archive::open(&self.bytes)?.unpack(self.description.version, &self.offer.identifier)?;
-            Code::load(unpacked, &self.description).map(Arc::new)
+            let unpacked = FmuArchive::open(&self.bytes)?.unpack(self.description.version, &self.offer.identifier)?;
+            FmuLibrary::load(unpacked, &self.description).map(Arc::new)
         };
         self.code.get_or_init(load).clone()
     }
@@ -93,7 +93,7 @@ impl MockUp {
     }
 
     /// What the equations of one component call. `texts` are the values of its texts, a line `INDEX=VALUE` each.
-    pub fn pool(self: &Arc<Self>, texts: &str) -> Pool {
+    pub fn pool(self: &Arc<Self>, texts: &str) -> InstancePool {
         let line = |l: &str| {
             let (index, value) = l.split_once('=')?;
             Some((index.parse().ok()?, value.to_owned()))
@@ -101,6 +101,6 @@ impl MockUp {
         let texts: Vec<(usize, String)> = texts.lines().filter_map(line).collect();
         let known = self.description.texts();
         let texts = texts.into_iter().filter(|(i, _)| known.contains(i)).collect();
-        Pool::new(self.clone(), texts)
+        InstancePool::new(self.clone(), texts)
     }
 }

@@ -5,9 +5,9 @@
 
 #![allow(unsafe_code, reason = "calls functions of C by pointers that their library gives")]
 
-use super::Trouble;
-use super::archive::Unpacked;
-use super::description::{Description, Kind, Passed, Version};
+use super::FmuError;
+use super::archive::FmuFiles;
+use super::description::{FmuDataType, FmuDescription, FmuInterface, FmuStandard};
 use libloading::Library;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
 use std::path::Path;
@@ -15,9 +15,9 @@ use std::ptr;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// An instance, as a unit names it.
-type Raw = *mut c_void;
+type InstancePointer = *mut c_void;
 /// What nearly all functions give back.
-type Status = c_int;
+type FmuStatus = c_int;
 
 /// A table of functions that a library may have.
 macro_rules! functions {
@@ -39,31 +39,31 @@ functions! {
     /// FMI 2.0
     Two {
         instantiate: "fmi2Instantiate"
-            fn(*const c_char, c_int, *const c_char, *const c_char, *const Callbacks, c_int, c_int) -> Raw;
-        free: "fmi2FreeInstance" fn(Raw);
-        setup: "fmi2SetupExperiment" fn(Raw, c_int, f64, f64, c_int, f64) -> Status;
-        enter_initialization: "fmi2EnterInitializationMode" fn(Raw) -> Status;
-        exit_initialization: "fmi2ExitInitializationMode" fn(Raw) -> Status;
-        reset: "fmi2Reset" fn(Raw) -> Status;
-        get_real: "fmi2GetReal" fn(Raw, *const u32, usize, *mut f64) -> Status;
-        get_integer: "fmi2GetInteger" fn(Raw, *const u32, usize, *mut i32) -> Status;
-        get_boolean: "fmi2GetBoolean" fn(Raw, *const u32, usize, *mut c_int) -> Status;
-        set_real: "fmi2SetReal" fn(Raw, *const u32, usize, *const f64) -> Status;
-        set_integer: "fmi2SetInteger" fn(Raw, *const u32, usize, *const i32) -> Status;
-        set_boolean: "fmi2SetBoolean" fn(Raw, *const u32, usize, *const c_int) -> Status;
-        set_string: "fmi2SetString" fn(Raw, *const u32, usize, *const *const c_char) -> Status;
-        do_step: "fmi2DoStep" fn(Raw, f64, f64, c_int) -> Status;
-        enter_event: "fmi2EnterEventMode" fn(Raw) -> Status;
-        new_states: "fmi2NewDiscreteStates" fn(Raw, *mut EventInfo) -> Status;
-        enter_continuous: "fmi2EnterContinuousTimeMode" fn(Raw) -> Status;
-        completed: "fmi2CompletedIntegratorStep" fn(Raw, c_int, *mut c_int, *mut c_int) -> Status;
-        set_time: "fmi2SetTime" fn(Raw, f64) -> Status;
-        set_states: "fmi2SetContinuousStates" fn(Raw, *const f64, usize) -> Status;
-        get_states: "fmi2GetContinuousStates" fn(Raw, *mut f64, usize) -> Status;
-        get_derivatives: "fmi2GetDerivatives" fn(Raw, *mut f64, usize) -> Status;
-        get_indicators: "fmi2GetEventIndicators" fn(Raw, *mut f64, usize) -> Status;
+            fn(*const c_char, c_int, *const c_char, *const c_char, *const FmuCallbacks, c_int, c_int) -> InstancePointer;
+        free: "fmi2FreeInstance" fn(InstancePointer);
+        setup: "fmi2SetupExperiment" fn(InstancePointer, c_int, f64, f64, c_int, f64) -> FmuStatus;
+        enter_initialization: "fmi2EnterInitializationMode" fn(InstancePointer) -> FmuStatus;
+        exit_initialization: "fmi2ExitInitializationMode" fn(InstancePointer) -> FmuStatus;
+        reset: "fmi2Reset" fn(InstancePointer) -> FmuStatus;
+        get_real: "fmi2GetReal" fn(InstancePointer, *const u32, usize, *mut f64) -> FmuStatus;
+        get_integer: "fmi2GetInteger" fn(InstancePointer, *const u32, usize, *mut i32) -> FmuStatus;
+        get_boolean: "fmi2GetBoolean" fn(InstancePointer, *const u32, usize, *mut c_int) -> FmuStatus;
+        set_real: "fmi2SetReal" fn(InstancePointer, *const u32, usize, *const f64) -> FmuStatus;
+        set_integer: "fmi2SetInteger" fn(InstancePointer, *const u32, usize, *const i32) -> FmuStatus;
+        set_boolean: "fmi2SetBoolean" fn(InstancePointer, *const u32, usize, *const c_int) -> FmuStatus;
+        set_string: "fmi2SetString" fn(InstancePointer, *const u32, usize, *const *const c_char) -> FmuStatus;
+        do_step: "fmi2DoStep" fn(InstancePointer, f64, f64, c_int) -> FmuStatus;
+        enter_event: "fmi2EnterEventMode" fn(InstancePointer) -> FmuStatus;
+        new_states: "fmi2NewDiscreteStates" fn(InstancePointer, *mut EventInfo) -> FmuStatus;
+        enter_continuous: "fmi2EnterContinuousTimeMode" fn(InstancePointer) -> FmuStatus;
+        completed: "fmi2CompletedIntegratorStep" fn(InstancePointer, c_int, *mut c_int, *mut c_int) -> FmuStatus;
+        set_time: "fmi2SetTime" fn(InstancePointer, f64) -> FmuStatus;
+        set_states: "fmi2SetContinuousStates" fn(InstancePointer, *const f64, usize) -> FmuStatus;
+        get_states: "fmi2GetContinuousStates" fn(InstancePointer, *mut f64, usize) -> FmuStatus;
+        get_derivatives: "fmi2GetDerivatives" fn(InstancePointer, *mut f64, usize) -> FmuStatus;
+        get_indicators: "fmi2GetEventIndicators" fn(InstancePointer, *mut f64, usize) -> FmuStatus;
         directional: "fmi2GetDirectionalDerivative"
-            fn(Raw, *const u32, usize, *const u32, usize, *const f64, *mut f64) -> Status;
+            fn(InstancePointer, *const u32, usize, *const u32, usize, *const f64, *mut f64) -> FmuStatus;
     }
 }
 
@@ -71,60 +71,60 @@ functions! {
     /// FMI 3.0
     Three {
         instantiate_me: "fmi3InstantiateModelExchange"
-            fn(*const c_char, *const c_char, *const c_char, bool, bool, *mut c_void, Log) -> Raw;
+            fn(*const c_char, *const c_char, *const c_char, bool, bool, *mut c_void, FmuLogCallback) -> InstancePointer;
         instantiate_cs: "fmi3InstantiateCoSimulation"
-            fn(*const c_char, *const c_char, *const c_char, bool, bool, bool, bool, *const u32, usize, *mut c_void, Log,
-               *const c_void) -> Raw;
-        free: "fmi3FreeInstance" fn(Raw);
-        enter_initialization: "fmi3EnterInitializationMode" fn(Raw, bool, f64, f64, bool, f64) -> Status;
-        exit_initialization: "fmi3ExitInitializationMode" fn(Raw) -> Status;
-        reset: "fmi3Reset" fn(Raw) -> Status;
-        get_float64: "fmi3GetFloat64" fn(Raw, *const u32, usize, *mut f64, usize) -> Status;
-        get_float32: "fmi3GetFloat32" fn(Raw, *const u32, usize, *mut f32, usize) -> Status;
-        get_int8: "fmi3GetInt8" fn(Raw, *const u32, usize, *mut i8, usize) -> Status;
-        get_uint8: "fmi3GetUInt8" fn(Raw, *const u32, usize, *mut u8, usize) -> Status;
-        get_int16: "fmi3GetInt16" fn(Raw, *const u32, usize, *mut i16, usize) -> Status;
-        get_uint16: "fmi3GetUInt16" fn(Raw, *const u32, usize, *mut u16, usize) -> Status;
-        get_int32: "fmi3GetInt32" fn(Raw, *const u32, usize, *mut i32, usize) -> Status;
-        get_uint32: "fmi3GetUInt32" fn(Raw, *const u32, usize, *mut u32, usize) -> Status;
-        get_int64: "fmi3GetInt64" fn(Raw, *const u32, usize, *mut i64, usize) -> Status;
-        get_uint64: "fmi3GetUInt64" fn(Raw, *const u32, usize, *mut u64, usize) -> Status;
-        get_boolean: "fmi3GetBoolean" fn(Raw, *const u32, usize, *mut u8, usize) -> Status;
-        set_float64: "fmi3SetFloat64" fn(Raw, *const u32, usize, *const f64, usize) -> Status;
-        set_float32: "fmi3SetFloat32" fn(Raw, *const u32, usize, *const f32, usize) -> Status;
-        set_int8: "fmi3SetInt8" fn(Raw, *const u32, usize, *const i8, usize) -> Status;
-        set_uint8: "fmi3SetUInt8" fn(Raw, *const u32, usize, *const u8, usize) -> Status;
-        set_int16: "fmi3SetInt16" fn(Raw, *const u32, usize, *const i16, usize) -> Status;
-        set_uint16: "fmi3SetUInt16" fn(Raw, *const u32, usize, *const u16, usize) -> Status;
-        set_int32: "fmi3SetInt32" fn(Raw, *const u32, usize, *const i32, usize) -> Status;
-        set_uint32: "fmi3SetUInt32" fn(Raw, *const u32, usize, *const u32, usize) -> Status;
-        set_int64: "fmi3SetInt64" fn(Raw, *const u32, usize, *const i64, usize) -> Status;
-        set_uint64: "fmi3SetUInt64" fn(Raw, *const u32, usize, *const u64, usize) -> Status;
-        set_boolean: "fmi3SetBoolean" fn(Raw, *const u32, usize, *const u8, usize) -> Status;
-        set_string: "fmi3SetString" fn(Raw, *const u32, usize, *const *const c_char, usize) -> Status;
-        do_step: "fmi3DoStep" fn(Raw, f64, f64, bool, *mut bool, *mut bool, *mut bool, *mut f64) -> Status;
-        enter_event: "fmi3EnterEventMode" fn(Raw) -> Status;
+            fn(*const c_char, *const c_char, *const c_char, bool, bool, bool, bool, *const u32, usize, *mut c_void, FmuLogCallback,
+               *const c_void) -> InstancePointer;
+        free: "fmi3FreeInstance" fn(InstancePointer);
+        enter_initialization: "fmi3EnterInitializationMode" fn(InstancePointer, bool, f64, f64, bool, f64) -> FmuStatus;
+        exit_initialization: "fmi3ExitInitializationMode" fn(InstancePointer) -> FmuStatus;
+        reset: "fmi3Reset" fn(InstancePointer) -> FmuStatus;
+        get_float64: "fmi3GetFloat64" fn(InstancePointer, *const u32, usize, *mut f64, usize) -> FmuStatus;
+        get_float32: "fmi3GetFloat32" fn(InstancePointer, *const u32, usize, *mut f32, usize) -> FmuStatus;
+        get_int8: "fmi3GetInt8" fn(InstancePointer, *const u32, usize, *mut i8, usize) -> FmuStatus;
+        get_uint8: "fmi3GetUInt8" fn(InstancePointer, *const u32, usize, *mut u8, usize) -> FmuStatus;
+        get_int16: "fmi3GetInt16" fn(InstancePointer, *const u32, usize, *mut i16, usize) -> FmuStatus;
+        get_uint16: "fmi3GetUInt16" fn(InstancePointer, *const u32, usize, *mut u16, usize) -> FmuStatus;
+        get_int32: "fmi3GetInt32" fn(InstancePointer, *const u32, usize, *mut i32, usize) -> FmuStatus;
+        get_uint32: "fmi3GetUInt32" fn(InstancePointer, *const u32, usize, *mut u32, usize) -> FmuStatus;
+        get_int64: "fmi3GetInt64" fn(InstancePointer, *const u32, usize, *mut i64, usize) -> FmuStatus;
+        get_uint64: "fmi3GetUInt64" fn(InstancePointer, *const u32, usize, *mut u64, usize) -> FmuStatus;
+        get_boolean: "fmi3GetBoolean" fn(InstancePointer, *const u32, usize, *mut u8, usize) -> FmuStatus;
+        set_float64: "fmi3SetFloat64" fn(InstancePointer, *const u32, usize, *const f64, usize) -> FmuStatus;
+        set_float32: "fmi3SetFloat32" fn(InstancePointer, *const u32, usize, *const f32, usize) -> FmuStatus;
+        set_int8: "fmi3SetInt8" fn(InstancePointer, *const u32, usize, *const i8, usize) -> FmuStatus;
+        set_uint8: "fmi3SetUInt8" fn(InstancePointer, *const u32, usize, *const u8, usize) -> FmuStatus;
+        set_int16: "fmi3SetInt16" fn(InstancePointer, *const u32, usize, *const i16, usize) -> FmuStatus;
+        set_uint16: "fmi3SetUInt16" fn(InstancePointer, *const u32, usize, *const u16, usize) -> FmuStatus;
+        set_int32: "fmi3SetInt32" fn(InstancePointer, *const u32, usize, *const i32, usize) -> FmuStatus;
+        set_uint32: "fmi3SetUInt32" fn(InstancePointer, *const u32, usize, *const u32, usize) -> FmuStatus;
+        set_int64: "fmi3SetInt64" fn(InstancePointer, *const u32, usize, *const i64, usize) -> FmuStatus;
+        set_uint64: "fmi3SetUInt64" fn(InstancePointer, *const u32, usize, *const u64, usize) -> FmuStatus;
+        set_boolean: "fmi3SetBoolean" fn(InstancePointer, *const u32, usize, *const u8, usize) -> FmuStatus;
+        set_string: "fmi3SetString" fn(InstancePointer, *const u32, usize, *const *const c_char, usize) -> FmuStatus;
+        do_step: "fmi3DoStep" fn(InstancePointer, f64, f64, bool, *mut bool, *mut bool, *mut bool, *mut f64) -> FmuStatus;
+        enter_event: "fmi3EnterEventMode" fn(InstancePointer) -> FmuStatus;
         update: "fmi3UpdateDiscreteStates"
-            fn(Raw, *mut bool, *mut bool, *mut bool, *mut bool, *mut bool, *mut f64) -> Status;
-        enter_continuous: "fmi3EnterContinuousTimeMode" fn(Raw) -> Status;
-        completed: "fmi3CompletedIntegratorStep" fn(Raw, bool, *mut bool, *mut bool) -> Status;
-        set_time: "fmi3SetTime" fn(Raw, f64) -> Status;
-        set_states: "fmi3SetContinuousStates" fn(Raw, *const f64, usize) -> Status;
-        get_states: "fmi3GetContinuousStates" fn(Raw, *mut f64, usize) -> Status;
-        get_derivatives: "fmi3GetContinuousStateDerivatives" fn(Raw, *mut f64, usize) -> Status;
-        get_indicators: "fmi3GetEventIndicators" fn(Raw, *mut f64, usize) -> Status;
+            fn(InstancePointer, *mut bool, *mut bool, *mut bool, *mut bool, *mut bool, *mut f64) -> FmuStatus;
+        enter_continuous: "fmi3EnterContinuousTimeMode" fn(InstancePointer) -> FmuStatus;
+        completed: "fmi3CompletedIntegratorStep" fn(InstancePointer, bool, *mut bool, *mut bool) -> FmuStatus;
+        set_time: "fmi3SetTime" fn(InstancePointer, f64) -> FmuStatus;
+        set_states: "fmi3SetContinuousStates" fn(InstancePointer, *const f64, usize) -> FmuStatus;
+        get_states: "fmi3GetContinuousStates" fn(InstancePointer, *mut f64, usize) -> FmuStatus;
+        get_derivatives: "fmi3GetContinuousStateDerivatives" fn(InstancePointer, *mut f64, usize) -> FmuStatus;
+        get_indicators: "fmi3GetEventIndicators" fn(InstancePointer, *mut f64, usize) -> FmuStatus;
         directional: "fmi3GetDirectionalDerivative"
-            fn(Raw, *const u32, usize, *const u32, usize, *const f64, usize, *mut f64, usize) -> Status;
+            fn(InstancePointer, *const u32, usize, *const u32, usize, *const f64, usize, *mut f64, usize) -> FmuStatus;
     }
 }
 
 /// `fmi3LogMessageCallback`
-type Log = unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char);
+type FmuLogCallback = unsafe extern "C" fn(*mut c_void, FmuStatus, *const c_char, *const c_char);
 
 /// `fmi2CallbackFunctions`. The logger takes more arguments than its type says; it is only handed on.
 #[repr(C)]
 #[derive(Debug)]
-struct Callbacks {
+struct FmuCallbacks {
     logger: unsafe extern "C" fn(),
     allocate: unsafe extern "C" fn(usize, usize) -> *mut c_void,
     free: unsafe extern "C" fn(*mut c_void),
@@ -152,7 +152,7 @@ unsafe extern "C" {
 }
 
 /// What a unit said last, at the address that it hands back.
-type Said = Mutex<Vec<String>>;
+type FmuMessages = Mutex<Vec<String>>;
 
 /// Lines of a unit that are kept.
 const KEPT: usize = 20;
@@ -162,12 +162,12 @@ const KEPT: usize = 20;
 /// # Safety
 /// `environment` is null or the address that the instance was given; `message` is null or a text of C.
 #[unsafe(no_mangle)]
-unsafe extern "C" fn bramah_mockup_said(environment: *mut c_void, status: Status, message: *const c_char) {
+unsafe extern "C" fn bramah_mockup_said(environment: *mut c_void, status: FmuStatus, message: *const c_char) {
     if environment.is_null() || message.is_null() {
         return;
     }
     // SAFETY: what the caller promises; the box behind it lives as long as the instance.
-    let (said, message) = unsafe { (&*environment.cast_const().cast::<Said>(), CStr::from_ptr(message)) };
+    let (said, message) = unsafe { (&*environment.cast_const().cast::<FmuMessages>(), CStr::from_ptr(message)) };
     let mut lines = said.lock().unwrap_or_else(PoisonError::into_inner);
     // what is in order is not worth a line
     if status != 0 {
@@ -179,65 +179,65 @@ unsafe extern "C" fn bramah_mockup_said(environment: *mut c_void, status: Status
 }
 
 /// `fmi3LogMessageCallback`, see [`bramah_mockup_said`].
-unsafe extern "C" fn log(environment: *mut c_void, status: Status, _: *const c_char, message: *const c_char) {
+unsafe extern "C" fn log(environment: *mut c_void, status: FmuStatus, _: *const c_char, message: *const c_char) {
     // SAFETY: what the caller promises.
     unsafe { bramah_mockup_said(environment, status, message) }
 }
 
 #[derive(Debug)]
-enum Functions {
+enum FmuFunctionTable {
     Two(Two),
     Three(Three),
 }
 
 /// A loaded library.
 #[derive(Debug)]
-pub struct Code {
-    functions: Functions,
+pub struct FmuLibrary {
+    functions: FmuFunctionTable,
     token: CString,
     resources: Option<CString>,
     // after the functions, which point into it, and before the folder in which it lies
     _library: Library,
-    _unpacked: Unpacked,
+    _unpacked: FmuFiles,
 }
 
-impl Code {
+impl FmuLibrary {
     /// Loads the library of a unit.
     ///
     /// # Errors
     /// The machine cannot load it.
-    pub fn load(unpacked: Unpacked, description: &Description) -> Result<Self, Trouble> {
+    pub fn load(unpacked: FmuFiles, description: &FmuDescription) -> Result<Self, FmuError> {
         // SAFETY: the library's initializers run, as they would in any tool that loads the unit.
         let library = unsafe { Library::new(&unpacked.library) };
         let library = library.map_err(|why| format!("its library cannot be loaded: {why}"))?;
         let functions = match description.version {
-            Version::Two => Functions::Two(Two::load(&library)),
-            Version::Three => Functions::Three(Three::load(&library)),
+            FmuStandard::Two => FmuFunctionTable::Two(Two::load(&library)),
+            FmuStandard::Three => FmuFunctionTable::Three(Three::load(&library)),
         };
         let token = CString::new(description.token.as_str()).map_err(|_| "its token holds a zero")?;
         let resources = unpacked.resources.as_deref().map(|path| resources(path, description.version));
-        Ok(Code { functions, token, resources, _library: library, _unpacked: unpacked })
+        Ok(FmuLibrary { functions, token, resources, _library: library, _unpacked: unpacked })
     }
 }
 
 /// The folder of resources as each standard wants it: an address, or a path with a separator at its end.
-fn resources(path: &Path, version: Version) -> CString {
+fn resources(path: &Path, version: FmuStandard) -> CString {
     let path = path.to_string_lossy();
     let text = match version {
-        Version::Two => {
+        FmuStandard::Two => {
             let plain = |b: u8| b.is_ascii_alphanumeric() || b"/-_.~".contains(&b);
             let path: String =
                 path.bytes().map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect();
             format!("file://{path}")
         }
-        Version::Three => format!("{path}{}", std::path::MAIN_SEPARATOR),
+        FmuStandard::Three => format!("{path}{}", std::path::MAIN_SEPARATOR),
     };
     CString::new(text).unwrap_or_default()
 }
 
 /// What came out of an event.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Update {
+pub struct DiscreteStateUpdate {
     /// To be asked once more.
     pub again: bool,
     /// The unit wants the run to end.
@@ -249,17 +249,17 @@ pub struct Update {
 }
 
 /// An instance of a unit.
-pub struct Instance {
-    code: Arc<Code>,
-    raw: Raw,
-    said: Box<Said>,
-    _callbacks: Box<Callbacks>,
+pub struct ImportedFmuInstance {
+    code: Arc<FmuLibrary>,
+    raw: InstancePointer,
+    said: Box<FmuMessages>,
+    _callbacks: Box<FmuCallbacks>,
 }
 
 // SAFETY: one thread at a time uses an instance, which the standards ask for; nothing of it belongs to a thread.
-unsafe impl Send for Instance {}
+unsafe impl Send for ImportedFmuInstance {}
 
-impl std::fmt::Debug for Instance {
+impl std::fmt::Debug for ImportedFmuInstance {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Instance").finish_non_exhaustive()
     }
@@ -269,12 +269,12 @@ impl std::fmt::Debug for Instance {
 macro_rules! call {
     ($self:ident, two $two:ident($($a:expr),*), three $three:ident($($b:expr),*)) => {
         match &$self.code.functions {
-            Functions::Two(f) => {
+            FmuFunctionTable::Two(f) => {
                 let function = f.$two.ok_or_else(|| missing(stringify!($two)))?;
                 // SAFETY: the instance lives, and the arguments are those of the header.
                 $self.judge(stringify!($two), unsafe { function($self.raw, $($a),*) })
             }
-            Functions::Three(f) => {
+            FmuFunctionTable::Three(f) => {
                 let function = f.$three.ok_or_else(|| missing(stringify!($three)))?;
                 // SAFETY: the instance lives, and the arguments are those of the header.
                 $self.judge(stringify!($three), unsafe { function($self.raw, $($b),*) })
@@ -283,19 +283,19 @@ macro_rules! call {
     };
 }
 
-fn missing(function: &str) -> Trouble {
+fn missing(function: &str) -> FmuError {
     format!("its library has no function for `{}`", function.replace('_', " ")).into()
 }
 
-impl Instance {
+impl ImportedFmuInstance {
     /// A new instance.
     ///
     /// # Errors
     /// The unit refuses; with what it says.
-    pub fn new(code: &Arc<Code>, name: &str, kind: Kind) -> Result<Self, Trouble> {
-        let said: Box<Said> = Box::default();
-        let environment = ptr::from_ref::<Said>(&said).cast_mut().cast::<c_void>();
-        let callbacks = Box::new(Callbacks {
+    pub fn new(code: &Arc<FmuLibrary>, name: &str, kind: FmuInterface) -> Result<Self, FmuError> {
+        let said: Box<FmuMessages> = Box::default();
+        let environment = ptr::from_ref::<FmuMessages>(&said).cast_mut().cast::<c_void>();
+        let callbacks = Box::new(FmuCallbacks {
             logger: bramah_mockup_logger,
             allocate: calloc,
             free,
@@ -308,16 +308,16 @@ impl Instance {
         // SAFETY: texts and callbacks live as long as the instance needs them; the types are those of the headers.
         let raw = unsafe {
             match (&code.functions, kind) {
-                (Functions::Two(f), _) => {
-                    let kind = c_int::from(kind == Kind::CoSimulation);
+                (FmuFunctionTable::Two(f), _) => {
+                    let kind = c_int::from(kind == FmuInterface::CoSimulation);
                     let make = f.instantiate.ok_or_else(|| missing("instantiate"))?;
                     make(name.as_ptr(), kind, token, place, &raw const *callbacks, 0, 1)
                 }
-                (Functions::Three(f), Kind::ModelExchange) => {
+                (FmuFunctionTable::Three(f), FmuInterface::ModelExchange) => {
                     let make = f.instantiate_me.ok_or_else(|| missing("instantiate_me"))?;
                     make(name.as_ptr(), token, place, false, true, environment, log)
                 }
-                (Functions::Three(f), Kind::CoSimulation) => {
+                (FmuFunctionTable::Three(f), FmuInterface::CoSimulation) => {
                     let make = f.instantiate_cs.ok_or_else(|| missing("instantiate_cs"))?;
                     let (none, never) = (ptr::null(), ptr::null());
                     make(name.as_ptr(), token, place, false, true, false, false, none, 0, environment, log, never)
@@ -327,11 +327,11 @@ impl Instance {
         if raw.is_null() {
             return Err(with_words("it cannot be instantiated".to_owned(), &said));
         }
-        Ok(Instance { code: code.clone(), raw, said, _callbacks: callbacks })
+        Ok(ImportedFmuInstance { code: code.clone(), raw, said, _callbacks: callbacks })
     }
 
     /// An error unless the unit was content; with what it said.
-    fn judge(&self, function: &str, status: Status) -> Result<(), Trouble> {
+    fn judge(&self, function: &str, status: FmuStatus) -> Result<(), FmuError> {
         let how = match status {
             0 | 1 => {
                 self.said.lock().unwrap_or_else(PoisonError::into_inner).clear();
@@ -349,8 +349,8 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn enter_initialization(&mut self, start: f64) -> Result<(), Trouble> {
-        if let Functions::Two(f) = &self.code.functions {
+    pub fn enter_initialization(&mut self, start: f64) -> Result<(), FmuError> {
+        if let FmuFunctionTable::Two(f) = &self.code.functions {
             let setup = f.setup.ok_or_else(|| missing("setup"))?;
             // SAFETY: the instance lives.
             self.judge("setup", unsafe { setup(self.raw, 0, 0.0, start, 0, 0.0) })?;
@@ -362,7 +362,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn exit_initialization(&mut self) -> Result<(), Trouble> {
+    pub fn exit_initialization(&mut self) -> Result<(), FmuError> {
         call!(self, two exit_initialization(), three exit_initialization())
     }
 
@@ -370,7 +370,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn reset(&mut self) -> Result<(), Trouble> {
+    pub fn reset(&mut self) -> Result<(), FmuError> {
         call!(self, two reset(), three reset())
     }
 
@@ -378,7 +378,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses, or wants the run to end.
-    pub fn step(&mut self, from: f64, to: f64) -> Result<(), Trouble> {
+    pub fn step(&mut self, from: f64, to: f64) -> Result<(), FmuError> {
         let (mut event, mut terminate, mut early, mut last) = (false, false, false, from);
         call!(self, two do_step(from, to - from, 1), three do_step(from, to - from, true, &raw mut event, &raw mut terminate, &raw mut early, &raw mut last))?;
         if terminate {
@@ -391,7 +391,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn get(&self, passed: Passed, reference: u32, into: &mut [f64]) -> Result<(), Trouble> {
+    pub fn get(&self, passed: FmuDataType, reference: u32, into: &mut [f64]) -> Result<(), FmuError> {
         let (r, n) = (&raw const reference, into.len());
         /// Reads into numbers of another type, then converts.
         macro_rules! read {
@@ -403,22 +403,24 @@ impl Instance {
         }
         let truth = |x: c_int| f64::from(u8::from(x != 0));
         match (passed, &self.code.functions) {
-            (Passed::Float64, _) => {
+            (FmuDataType::Float64, _) => {
                 let to = into.as_mut_ptr();
                 return call!(self, two get_real(r, 1, to), three get_float64(r, 1, to, n));
             }
-            (Passed::Boolean, Functions::Two(_)) => read!(0 as c_int, get_boolean, get_boolean, truth),
-            (Passed::Boolean, Functions::Three(_)) => read!(0_u8, get_boolean, get_boolean, |x| truth(c_int::from(x))),
-            (Passed::Float32, _) => read!(0_f32, get_real, get_float32, f64::from),
-            (Passed::Int8, _) => read!(0_i8, get_integer, get_int8, f64::from),
-            (Passed::UInt8, _) => read!(0_u8, get_integer, get_uint8, f64::from),
-            (Passed::Int16, _) => read!(0_i16, get_integer, get_int16, f64::from),
-            (Passed::UInt16, _) => read!(0_u16, get_integer, get_uint16, f64::from),
-            (Passed::Int32, _) => read!(0_i32, get_integer, get_int32, f64::from),
-            (Passed::UInt32, _) => read!(0_u32, get_integer, get_uint32, f64::from),
-            (Passed::Int64, _) => read!(0_i64, get_integer, get_int64, |x: i64| x as f64),
-            (Passed::UInt64, _) => read!(0_u64, get_integer, get_uint64, |x: u64| x as f64),
-            (Passed::String, _) => into.fill(f64::NAN),
+            (FmuDataType::Boolean, FmuFunctionTable::Two(_)) => read!(0 as c_int, get_boolean, get_boolean, truth),
+            (FmuDataType::Boolean, FmuFunctionTable::Three(_)) => {
+                read!(0_u8, get_boolean, get_boolean, |x| truth(c_int::from(x)))
+            }
+            (FmuDataType::Float32, _) => read!(0_f32, get_real, get_float32, f64::from),
+            (FmuDataType::Int8, _) => read!(0_i8, get_integer, get_int8, f64::from),
+            (FmuDataType::UInt8, _) => read!(0_u8, get_integer, get_uint8, f64::from),
+            (FmuDataType::Int16, _) => read!(0_i16, get_integer, get_int16, f64::from),
+            (FmuDataType::UInt16, _) => read!(0_u16, get_integer, get_uint16, f64::from),
+            (FmuDataType::Int32, _) => read!(0_i32, get_integer, get_int32, f64::from),
+            (FmuDataType::UInt32, _) => read!(0_u32, get_integer, get_uint32, f64::from),
+            (FmuDataType::Int64, _) => read!(0_i64, get_integer, get_int64, |x: i64| x as f64),
+            (FmuDataType::UInt64, _) => read!(0_u64, get_integer, get_uint64, |x: u64| x as f64),
+            (FmuDataType::String, _) => into.fill(f64::NAN),
         }
         Ok(())
     }
@@ -428,7 +430,7 @@ impl Instance {
     /// # Errors
     /// The unit refuses.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "`as` saturates")]
-    pub fn set(&mut self, passed: Passed, reference: u32, from: &[f64]) -> Result<(), Trouble> {
+    pub fn set(&mut self, passed: FmuDataType, reference: u32, from: &[f64]) -> Result<(), FmuError> {
         let (r, n) = (&raw const reference, from.len());
         /// Converts, then sets numbers of another type.
         macro_rules! write {
@@ -438,21 +440,25 @@ impl Instance {
             }};
         }
         match (passed, &self.code.functions) {
-            (Passed::Float64, _) => {
+            (FmuDataType::Float64, _) => {
                 call!(self, two set_real(r, 1, from.as_ptr()), three set_float64(r, 1, from.as_ptr(), n))
             }
-            (Passed::Boolean, Functions::Two(_)) => write!(|x| c_int::from(x != 0.0), set_boolean, set_boolean),
-            (Passed::Boolean, Functions::Three(_)) => write!(|x| u8::from(x != 0.0), set_boolean, set_boolean),
-            (Passed::Float32, _) => write!(|x| x as f32, set_real, set_float32),
-            (Passed::Int8, _) => write!(|x: f64| x.round() as i8, set_integer, set_int8),
-            (Passed::UInt8, _) => write!(|x: f64| x.round() as u8, set_integer, set_uint8),
-            (Passed::Int16, _) => write!(|x: f64| x.round() as i16, set_integer, set_int16),
-            (Passed::UInt16, _) => write!(|x: f64| x.round() as u16, set_integer, set_uint16),
-            (Passed::Int32, _) => write!(|x: f64| x.round() as i32, set_integer, set_int32),
-            (Passed::UInt32, _) => write!(|x: f64| x.round() as u32, set_integer, set_uint32),
-            (Passed::Int64, _) => write!(|x: f64| x.round() as i64, set_integer, set_int64),
-            (Passed::UInt64, _) => write!(|x: f64| x.round() as u64, set_integer, set_uint64),
-            (Passed::String, _) => Ok(()),
+            (FmuDataType::Boolean, FmuFunctionTable::Two(_)) => {
+                write!(|x| c_int::from(x != 0.0), set_boolean, set_boolean)
+            }
+            (FmuDataType::Boolean, FmuFunctionTable::Three(_)) => {
+                write!(|x| u8::from(x != 0.0), set_boolean, set_boolean)
+            }
+            (FmuDataType::Float32, _) => write!(|x| x as f32, set_real, set_float32),
+            (FmuDataType::Int8, _) => write!(|x: f64| x.round() as i8, set_integer, set_int8),
+            (FmuDataType::UInt8, _) => write!(|x: f64| x.round() as u8, set_integer, set_uint8),
+            (FmuDataType::Int16, _) => write!(|x: f64| x.round() as i16, set_integer, set_int16),
+            (FmuDataType::UInt16, _) => write!(|x: f64| x.round() as u16, set_integer, set_uint16),
+            (FmuDataType::Int32, _) => write!(|x: f64| x.round() as i32, set_integer, set_int32),
+            (FmuDataType::UInt32, _) => write!(|x: f64| x.round() as u32, set_integer, set_uint32),
+            (FmuDataType::Int64, _) => write!(|x: f64| x.round() as i64, set_integer, set_int64),
+            (FmuDataType::UInt64, _) => write!(|x: f64| x.round() as u64, set_integer, set_uint64),
+            (FmuDataType::String, _) => Ok(()),
         }
     }
 
@@ -460,7 +466,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn set_text(&mut self, reference: u32, text: &str) -> Result<(), Trouble> {
+    pub fn set_text(&mut self, reference: u32, text: &str) -> Result<(), FmuError> {
         let text = CString::new(text).map_err(|_| "a text with a zero inside cannot be passed on")?;
         let (r, texts) = (&raw const reference, [text.as_ptr()]);
         call!(self, two set_string(r, 1, texts.as_ptr()), three set_string(r, 1, texts.as_ptr(), 1))
@@ -470,7 +476,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn set_time(&mut self, time: f64) -> Result<(), Trouble> {
+    pub fn set_time(&mut self, time: f64) -> Result<(), FmuError> {
         call!(self, two set_time(time), three set_time(time))
     }
 
@@ -478,7 +484,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn set_states(&mut self, x: &[f64]) -> Result<(), Trouble> {
+    pub fn set_states(&mut self, x: &[f64]) -> Result<(), FmuError> {
         call!(self, two set_states(x.as_ptr(), x.len()), three set_states(x.as_ptr(), x.len()))
     }
 
@@ -486,7 +492,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn states(&self, x: &mut [f64]) -> Result<(), Trouble> {
+    pub fn states(&self, x: &mut [f64]) -> Result<(), FmuError> {
         call!(self, two get_states(x.as_mut_ptr(), x.len()), three get_states(x.as_mut_ptr(), x.len()))
     }
 
@@ -494,7 +500,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn derivatives(&self, dx: &mut [f64]) -> Result<(), Trouble> {
+    pub fn derivatives(&self, dx: &mut [f64]) -> Result<(), FmuError> {
         call!(self, two get_derivatives(dx.as_mut_ptr(), dx.len()), three get_derivatives(dx.as_mut_ptr(), dx.len()))
     }
 
@@ -502,7 +508,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn indicators(&self, z: &mut [f64]) -> Result<(), Trouble> {
+    pub fn indicators(&self, z: &mut [f64]) -> Result<(), FmuError> {
         call!(self, two get_indicators(z.as_mut_ptr(), z.len()), three get_indicators(z.as_mut_ptr(), z.len()))
     }
 
@@ -510,7 +516,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn directional(&self, unknowns: &[u32], known: u32, into: &mut [f64]) -> Result<(), Trouble> {
+    pub fn directional(&self, unknowns: &[u32], known: u32, into: &mut [f64]) -> Result<(), FmuError> {
         let (n, known, seed) = (unknowns.len(), [known], [1.0]);
         let (u, k, s, to) = (unknowns.as_ptr(), known.as_ptr(), seed.as_ptr(), into.as_mut_ptr());
         call!(self, two directional(u, n, k, 1, s, to), three directional(u, n, k, 1, s, 1, to, n))
@@ -520,7 +526,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn completed_step(&mut self) -> Result<(), Trouble> {
+    pub fn completed_step(&mut self) -> Result<(), FmuError> {
         let (mut event, mut terminate, mut event3, mut terminate3) = (0, 0, false, false);
         call!(self, two completed(1, &raw mut event, &raw mut terminate), three completed(true, &raw mut event3, &raw mut terminate3))
     }
@@ -529,7 +535,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn enter_event(&mut self) -> Result<(), Trouble> {
+    pub fn enter_event(&mut self) -> Result<(), FmuError> {
         call!(self, two enter_event(), three enter_event())
     }
 
@@ -537,7 +543,7 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn enter_continuous(&mut self) -> Result<(), Trouble> {
+    pub fn enter_continuous(&mut self) -> Result<(), FmuError> {
         call!(self, two enter_continuous(), three enter_continuous())
     }
 
@@ -545,28 +551,30 @@ impl Instance {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn update(&mut self) -> Result<Update, Trouble> {
+    pub fn update(&mut self) -> Result<DiscreteStateUpdate, FmuError> {
         let mut info = EventInfo::default();
         let (mut again, mut terminate, mut nominals, mut values, mut defined) = (false, false, false, false, false);
         let mut next = 0.0;
         call!(self, two new_states(&raw mut info), three update(&raw mut again, &raw mut terminate, &raw mut nominals, &raw mut values, &raw mut defined, &raw mut next))?;
         Ok(match &self.code.functions {
-            Functions::Two(_) => Update {
+            FmuFunctionTable::Two(_) => DiscreteStateUpdate {
                 again: info.again != 0,
                 terminate: info.terminate != 0,
                 states_changed: info.values_changed != 0,
                 next: (info.next_defined != 0).then_some(info.next),
             },
-            Functions::Three(_) => Update { again, terminate, states_changed: values, next: defined.then_some(next) },
+            FmuFunctionTable::Three(_) => {
+                DiscreteStateUpdate { again, terminate, states_changed: values, next: defined.then_some(next) }
+            }
         })
     }
 }
 
-impl Drop for Instance {
+impl Drop for ImportedFmuInstance {
     fn drop(&mut self) {
         let free = match &self.code.functions {
-            Functions::Two(f) => f.free,
-            Functions::Three(f) => f.free,
+            FmuFunctionTable::Two(f) => f.free,
+            FmuFunctionTable::Three(f) => f.free,
         };
         if let Some(free) = free {
             // SAFETY: the instance lives and is used no more.
@@ -576,7 +584,7 @@ impl Drop for Instance {
 }
 
 /// A sentence with what the unit said.
-fn with_words(sentence: String, said: &Said) -> Trouble {
+fn with_words(sentence: String, said: &FmuMessages) -> FmuError {
     let lines = std::mem::take(&mut *said.lock().unwrap_or_else(PoisonError::into_inner));
     let lines: Vec<String> = lines.into_iter().filter(|l| !l.is_empty()).collect();
     if lines.is_empty() { sentence.into() } else { format!("{sentence}; it says: {}", lines.join(" / ")).into() }

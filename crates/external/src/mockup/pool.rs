@@ -6,9 +6,9 @@
 //! instances behind them. An instance that stands where a run is serves at once; where there is none, one is made and does
 //! again what the number stands for.
 
-use super::description::{Causality, Description, Kind};
-use super::native::Instance;
-use super::{MockUp, Trouble};
+use super::description::{FmuCausality, FmuDescription, FmuInterface};
+use super::native::ImportedFmuInstance;
+use super::{FmuError, ImportedFmu};
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
@@ -23,23 +23,23 @@ const MOST_PASSES: usize = 1000;
 
 /// What is done to an instance.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Act {
+pub enum InstanceAction {
     /// From a time to another (s), with these inputs.
     Step { from: f64, to: f64, inputs: Box<[f64]> },
     /// An event at this time (s), with these states and inputs.
     Event { time: f64, states: Box<[f64]>, inputs: Box<[f64]> },
 }
 
-impl Act {
+impl InstanceAction {
     /// The number of the state that it leads to.
     fn after(&self, state: u64) -> u64 {
         let mut words = vec![state];
         match self {
-            Act::Step { from, to, inputs } => {
+            InstanceAction::Step { from, to, inputs } => {
                 words.extend([1, from.to_bits(), to.to_bits()]);
                 words.extend(inputs.iter().map(|x| x.to_bits()));
             }
-            Act::Event { time, states, inputs } => {
+            InstanceAction::Event { time, states, inputs } => {
                 words.extend([2, time.to_bits()]);
                 words.extend(states.iter().chain(inputs).map(|x| x.to_bits()));
             }
@@ -62,7 +62,7 @@ fn fingerprint(words: &[u64]) -> u64 {
 
 /// What came of an event.
 #[derive(Clone, Debug)]
-pub struct Happened {
+pub struct InstanceEventResult {
     /// The state behind it.
     pub state: u64,
     /// The next event of known time (s).
@@ -72,8 +72,8 @@ pub struct Happened {
 }
 
 /// An instance with what it is used for.
-struct Slot {
-    instance: Instance,
+struct InstanceSlot {
+    instance: ImportedFmuInstance,
     /// Where it stands.
     state: u64,
     /// When it entered initialization (s), while it is there.
@@ -83,26 +83,26 @@ struct Slot {
 }
 
 /// Where a state comes from.
-enum Origin {
+enum InstanceStateOrigin {
     /// Parameters, as numbers.
     Root(Arc<[f64]>),
     /// A state, and what was done.
-    Done(u64, Arc<Act>),
+    Done(u64, Arc<InstanceAction>),
 }
 
 #[derive(Default)]
-struct Shelf {
-    ready: Vec<Slot>,
+struct InstancePoolState {
+    ready: Vec<InstanceSlot>,
     /// States at which instances are at work.
     busy: Vec<u64>,
-    origins: FxHashMap<u64, Origin>,
+    origins: FxHashMap<u64, InstanceStateOrigin>,
     /// How many origins there may be before they are sifted.
     most: usize,
 }
 
 /// All instances of a unit.
-pub struct Pool {
-    unit: Arc<MockUp>,
+pub struct InstancePool {
+    unit: Arc<ImportedFmu>,
     /// Texts by the indices of their variables.
     texts: Vec<(usize, String)>,
     /// The parameters, as indices of variables.
@@ -111,19 +111,19 @@ pub struct Pool {
     pub inputs: Vec<usize>,
     /// The outputs, as indices of variables.
     pub outputs: Vec<usize>,
-    shelf: Mutex<Shelf>,
+    shelf: Mutex<InstancePoolState>,
     /// What went wrong last in any call.
-    failure: Mutex<Option<Trouble>>,
+    failure: Mutex<Option<FmuError>>,
     returned: Condvar,
 }
 
-impl Pool {
+impl InstancePool {
     /// Without instances as yet.
-    pub fn new(unit: Arc<MockUp>, texts: Vec<(usize, String)>) -> Self {
-        Pool {
+    pub fn new(unit: Arc<ImportedFmu>, texts: Vec<(usize, String)>) -> Self {
+        InstancePool {
             parameters: super::text::offered(&unit.description),
-            inputs: unit.description.of(Causality::Input),
-            outputs: unit.description.of(Causality::Output),
+            inputs: unit.description.of(FmuCausality::Input),
+            outputs: unit.description.of(FmuCausality::Output),
             unit,
             texts,
             shelf: Mutex::default(),
@@ -138,12 +138,12 @@ impl Pool {
     }
 
     /// What the unit says of itself.
-    pub fn description(&self) -> &Description {
+    pub fn description(&self) -> &FmuDescription {
         &self.unit.description
     }
 
     /// Notes what went wrong.
-    pub fn note(&self, why: &Trouble) {
+    pub fn note(&self, why: &FmuError) {
         *self.failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(why.clone());
     }
 
@@ -153,11 +153,11 @@ impl Pool {
     }
 
     /// As a sentence.
-    pub fn words(&self, why: &Trouble) -> String {
+    pub fn words(&self, why: &FmuError) -> String {
         format!("the unit `{}`: {why}", self.description().name)
     }
 
-    fn shelf(&self) -> MutexGuard<'_, Shelf> {
+    fn shelf(&self) -> MutexGuard<'_, InstancePoolState> {
         self.shelf.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -165,21 +165,21 @@ impl Pool {
     pub fn root(&self, parameters: &[f64]) -> u64 {
         let words: Vec<u64> = parameters.iter().map(|x| x.to_bits()).collect();
         let root = fingerprint(&words);
-        self.shelf().origins.entry(root).or_insert_with(|| Origin::Root(parameters.into()));
+        self.shelf().origins.entry(root).or_insert_with(|| InstanceStateOrigin::Root(parameters.into()));
         root
     }
 
     /// Whether nothing was done yet.
     pub fn is_root(&self, state: u64) -> bool {
-        matches!(self.shelf().origins.get(&state), Some(Origin::Root(_)))
+        matches!(self.shelf().origins.get(&state), Some(InstanceStateOrigin::Root(_)))
     }
 
     /// Does something to a state: the state behind it.
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn step(&self, state: u64, from: f64, to: f64, inputs: &[f64]) -> Result<u64, Trouble> {
-        let act = Act::Step { from, to, inputs: inputs.into() };
+    pub fn step(&self, state: u64, from: f64, to: f64, inputs: &[f64]) -> Result<u64, FmuError> {
+        let act = InstanceAction::Step { from, to, inputs: inputs.into() };
         let after = act.after(state);
         if !self.shelf().ready.iter().any(|s| s.state == after) {
             self.with(state, |slot, pool| pool.act(slot, &act))?;
@@ -192,12 +192,18 @@ impl Pool {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn event(&self, state: u64, time: f64, states: &[f64], inputs: &[f64]) -> Result<Happened, Trouble> {
-        let act = Act::Event { time, states: states.into(), inputs: inputs.into() };
+    pub fn event(
+        &self,
+        state: u64,
+        time: f64,
+        states: &[f64],
+        inputs: &[f64],
+    ) -> Result<InstanceEventResult, FmuError> {
+        let act = InstanceAction::Event { time, states: states.into(), inputs: inputs.into() };
         let after = act.after(state);
         let (next, states) = self.with(state, |slot, pool| pool.act(slot, &act))?;
         self.shelf().note(after, state, act)?;
-        Ok(Happened { state: after, next, states })
+        Ok(InstanceEventResult { state: after, next, states })
     }
 
     /// Looks at an instance that stands at a state, at a time (s) with these states and inputs.
@@ -210,13 +216,13 @@ impl Pool {
         time: f64,
         states: &[f64],
         inputs: &[f64],
-        see: impl Fn(&mut Instance) -> Result<T, Trouble>,
-    ) -> Result<T, Trouble> {
+        see: impl Fn(&mut ImportedFmuInstance) -> Result<T, FmuError>,
+    ) -> Result<T, FmuError> {
         self.with(state, |slot, pool| {
             if pool.is_root(slot.state) {
                 pool.initialize(slot, time)?;
                 pool.set_inputs(slot, inputs, true)?;
-            } else if pool.unit.kind == Kind::ModelExchange {
+            } else if pool.unit.kind == FmuInterface::ModelExchange {
                 slot.instance.set_time(time)?;
                 pool.set_continuous(slot, states, inputs)?;
             }
@@ -225,7 +231,11 @@ impl Pool {
     }
 
     /// Acts on an instance that stands at a state; one that refuses is used no more.
-    fn with<T>(&self, state: u64, act: impl Fn(&mut Slot, &Pool) -> Result<T, Trouble>) -> Result<T, Trouble> {
+    fn with<T>(
+        &self,
+        state: u64,
+        act: impl Fn(&mut InstanceSlot, &InstancePool) -> Result<T, FmuError>,
+    ) -> Result<T, FmuError> {
         let mut slot = self.take(state)?;
         let done = act(&mut slot, self);
         let mut shelf = self.shelf();
@@ -238,7 +248,7 @@ impl Pool {
         done
     }
 
-    fn take(&self, state: u64) -> Result<Slot, Trouble> {
+    fn take(&self, state: u64) -> Result<InstanceSlot, FmuError> {
         let mut shelf = self.shelf();
         loop {
             if let Some(i) = shelf.ready.iter().rposition(|s| s.state == state) {
@@ -276,15 +286,21 @@ impl Pool {
 
     /// An instance with everything done to it again. A spare one is taken back to its beginning where the process cannot
     /// hold another one, and else replaced: resetting is what units do worst.
-    fn make(&self, spare: Option<Slot>, root: u64, parameters: &[f64], acts: &[Arc<Act>]) -> Result<Slot, Trouble> {
+    fn make(
+        &self,
+        spare: Option<InstanceSlot>,
+        root: u64,
+        parameters: &[f64],
+        acts: &[Arc<InstanceAction>],
+    ) -> Result<InstanceSlot, FmuError> {
         let instance = match spare {
             Some(mut slot) if self.only_once() => {
                 slot.instance.reset()?;
                 slot.instance
             }
-            _ => Instance::new(&self.unit.code()?, &self.description().name, self.unit.kind)?,
+            _ => ImportedFmuInstance::new(&self.unit.code()?, &self.description().name, self.unit.kind)?,
         };
-        let mut slot = Slot { instance, state: root, initial: None, inputs: Vec::new() };
+        let mut slot = InstanceSlot { instance, state: root, initial: None, inputs: Vec::new() };
         self.set_up(&mut slot, parameters)?;
         for act in acts {
             self.act(&mut slot, act)?;
@@ -293,7 +309,7 @@ impl Pool {
     }
 
     /// Parameters and texts of an instance that is as it was made.
-    fn set_up(&self, slot: &mut Slot, parameters: &[f64]) -> Result<(), Trouble> {
+    fn set_up(&self, slot: &mut InstanceSlot, parameters: &[f64]) -> Result<(), FmuError> {
         for (&i, value) in self.parameters.iter().zip(spread(self, &self.parameters, parameters)) {
             let v = &self.description().variables[i];
             // what was not changed is left alone
@@ -310,10 +326,10 @@ impl Pool {
         Ok(())
     }
 
-    fn act(&self, slot: &mut Slot, act: &Act) -> Result<(Option<f64>, Vec<f64>), Trouble> {
+    fn act(&self, slot: &mut InstanceSlot, act: &InstanceAction) -> Result<(Option<f64>, Vec<f64>), FmuError> {
         let at_root = self.is_root(slot.state);
         let found = match act {
-            Act::Step { from, to, inputs } => {
+            InstanceAction::Step { from, to, inputs } => {
                 if at_root {
                     self.initialize(slot, *from)?;
                     self.set_inputs(slot, inputs, true)?;
@@ -323,7 +339,7 @@ impl Pool {
                 slot.instance.step(*from, *to)?;
                 (None, Vec::new())
             }
-            Act::Event { time, states, inputs } => {
+            InstanceAction::Event { time, states, inputs } => {
                 if at_root {
                     self.initialize(slot, *time)?;
                     self.set_inputs(slot, inputs, true)?;
@@ -344,7 +360,12 @@ impl Pool {
     }
 
     /// The unit's event iteration: the next event of known time, and the continuous states.
-    fn iterate(&self, slot: &mut Slot, at_root: bool, states: &[f64]) -> Result<(Option<f64>, Vec<f64>), Trouble> {
+    fn iterate(
+        &self,
+        slot: &mut InstanceSlot,
+        at_root: bool,
+        states: &[f64],
+    ) -> Result<(Option<f64>, Vec<f64>), FmuError> {
         let mut changed = at_root;
         for _ in 0..MOST_PASSES {
             let update = slot.instance.update()?;
@@ -364,7 +385,7 @@ impl Pool {
         Err("its event iteration does not end".into())
     }
 
-    fn initialize(&self, slot: &mut Slot, time: f64) -> Result<(), Trouble> {
+    fn initialize(&self, slot: &mut InstanceSlot, time: f64) -> Result<(), FmuError> {
         match slot.initial {
             Some(t) if t == time => Ok(()),
             Some(_) => {
@@ -373,7 +394,8 @@ impl Pool {
                 if self.only_once() {
                     slot.instance.reset()?;
                 } else {
-                    slot.instance = Instance::new(&self.unit.code()?, &self.description().name, self.unit.kind)?;
+                    slot.instance =
+                        ImportedFmuInstance::new(&self.unit.code()?, &self.description().name, self.unit.kind)?;
                 }
                 (slot.initial, slot.inputs) = (None, Vec::new());
                 self.set_up(slot, &parameters)?;
@@ -388,7 +410,7 @@ impl Pool {
     }
 
     /// Sets inputs that have changed; those with discrete values only where `all` may be set.
-    fn set_inputs(&self, slot: &mut Slot, inputs: &[f64], all: bool) -> Result<(), Trouble> {
+    fn set_inputs(&self, slot: &mut InstanceSlot, inputs: &[f64], all: bool) -> Result<(), FmuError> {
         let before = spread(self, &self.inputs, &slot.inputs);
         for (k, (&i, value)) in self.inputs.iter().zip(spread(self, &self.inputs, inputs)).enumerate() {
             let v = &self.description().variables[i];
@@ -413,7 +435,7 @@ impl Pool {
         Ok(())
     }
 
-    fn set_continuous(&self, slot: &mut Slot, states: &[f64], inputs: &[f64]) -> Result<(), Trouble> {
+    fn set_continuous(&self, slot: &mut InstanceSlot, states: &[f64], inputs: &[f64]) -> Result<(), FmuError> {
         if !states.is_empty() {
             slot.instance.set_states(states)?;
         }
@@ -424,7 +446,12 @@ impl Pool {
     ///
     /// # Errors
     /// The unit refuses.
-    pub fn read(&self, instance: &Instance, variables: &[usize], into: &mut Vec<f64>) -> Result<(), Trouble> {
+    pub fn read(
+        &self,
+        instance: &ImportedFmuInstance,
+        variables: &[usize],
+        into: &mut Vec<f64>,
+    ) -> Result<(), FmuError> {
         for &i in variables {
             let v = &self.description().variables[i];
             let at = into.len();
@@ -436,7 +463,7 @@ impl Pool {
 }
 
 /// Numbers by variable.
-fn spread(pool: &Pool, variables: &[usize], numbers: &[f64]) -> Vec<Vec<f64>> {
+fn spread(pool: &InstancePool, variables: &[usize], numbers: &[f64]) -> Vec<Vec<f64>> {
     let mut rest = numbers;
     let mut part = |i: &usize| {
         let (own, behind) = rest.split_at(pool.description().variables[*i].size().min(rest.len()));
@@ -446,7 +473,7 @@ fn spread(pool: &Pool, variables: &[usize], numbers: &[f64]) -> Vec<Vec<f64>> {
     variables.iter().map(&mut part).collect()
 }
 
-impl Shelf {
+impl InstancePoolState {
     /// One instance less is at work.
     fn leave(&mut self, state: u64) {
         if let Some(i) = self.busy.iter().position(|s| *s == state) {
@@ -455,24 +482,25 @@ impl Shelf {
     }
 
     /// Notes where a state comes from.
-    fn note(&mut self, after: u64, before: u64, act: Act) -> Result<(), Trouble> {
-        let origin = self.origins.entry(after).or_insert_with(|| Origin::Done(before, Arc::new(act.clone())));
+    fn note(&mut self, after: u64, before: u64, act: InstanceAction) -> Result<(), FmuError> {
+        let origin =
+            self.origins.entry(after).or_insert_with(|| InstanceStateOrigin::Done(before, Arc::new(act.clone())));
         match origin {
-            Origin::Done(b, a) if *b == before && **a == act => Ok(()),
+            InstanceStateOrigin::Done(b, a) if *b == before && **a == act => Ok(()),
             _ => Err("two of its states have the same fingerprint; another communication step helps".into()),
         }
     }
 
     /// What a state stands for: its root with the parameters there, and what was done since.
-    fn path(&self, mut state: u64) -> Result<(u64, Arc<[f64]>, Vec<Arc<Act>>), Trouble> {
+    fn path(&self, mut state: u64) -> Result<(u64, Arc<[f64]>, Vec<Arc<InstanceAction>>), FmuError> {
         let mut acts = Vec::new();
         loop {
             match self.origins.get(&state) {
-                Some(Origin::Root(parameters)) => {
+                Some(InstanceStateOrigin::Root(parameters)) => {
                     acts.reverse();
                     return Ok((state, parameters.clone(), acts));
                 }
-                Some(Origin::Done(before, act)) => {
+                Some(InstanceStateOrigin::Done(before, act)) => {
                     acts.push(act.clone());
                     state = *before;
                 }
@@ -486,13 +514,13 @@ impl Shelf {
         if self.origins.len() < self.most.max(MOST_KEPT) {
             return;
         }
-        let mut kept: FxHashMap<u64, Origin> = FxHashMap::default();
+        let mut kept: FxHashMap<u64, InstanceStateOrigin> = FxHashMap::default();
         let standing: Vec<u64> = self.ready.iter().map(|s| s.state).chain(self.busy.iter().copied()).collect();
         for mut state in standing {
             while let Some(origin) = self.origins.remove(&state) {
                 let before = match &origin {
-                    Origin::Root(_) => None,
-                    Origin::Done(before, _) => Some(*before),
+                    InstanceStateOrigin::Root(_) => None,
+                    InstanceStateOrigin::Done(before, _) => Some(*before),
                 };
                 kept.insert(state, origin);
                 match before {
@@ -502,13 +530,13 @@ impl Shelf {
             }
         }
         let roots = std::mem::take(&mut self.origins);
-        kept.extend(roots.into_iter().filter(|(_, o)| matches!(o, Origin::Root(_))));
+        kept.extend(roots.into_iter().filter(|(_, o)| matches!(o, InstanceStateOrigin::Root(_))));
         self.origins = kept;
         self.most = 2 * self.origins.len();
     }
 }
 
-impl std::fmt::Debug for Pool {
+impl std::fmt::Debug for InstancePool {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "instances of {}", self.description().name)
     }

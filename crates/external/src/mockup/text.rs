@@ -1,7 +1,9 @@
 //! The Modelica class that stands for a unit in a circuit: its parameters, inputs and outputs in SI, and equations that
 //! call the functions of `FMU`, which it extends.
 
-use super::description::{Causality, Description, Kind, Passed, Scale, Variable, Version};
+use super::description::{
+    FmuCausality, FmuDataType, FmuDescription, FmuInterface, FmuStandard, FmuVariable, UnitConversion,
+};
 use super::functions::NEVER;
 use std::fmt::Write;
 
@@ -15,16 +17,16 @@ const OWN: [&str; 21] = [
 const STEP: f64 = 0.01;
 
 /// Parameters that a circuit may set, as indices of variables.
-pub fn offered(description: &Description) -> Vec<usize> {
-    let all = description.of(Causality::Parameter);
+pub fn offered(description: &FmuDescription) -> Vec<usize> {
+    let all = description.of(FmuCausality::Parameter);
     all.into_iter().filter(|&i| !description.variables[i].start.is_empty()).collect()
 }
 
 /// The class.
-pub fn class(description: &Description, kind: Kind) -> String {
+pub fn class(description: &FmuDescription, kind: FmuInterface) -> String {
     let d = description;
     let (parameters, texts) = (offered(d), d.texts());
-    let (inputs, outputs) = (d.of(Causality::Input), d.of(Causality::Output));
+    let (inputs, outputs) = (d.of(FmuCausality::Input), d.of(FmuCausality::Output));
     let mut out = format!("model FMU {}\n  extends .FMU;\n", quoted(&title(d, kind)));
     let v = |i: &usize| &d.variables[*i];
     parameters.iter().for_each(|i| out += &parameter(v(i)));
@@ -34,7 +36,7 @@ pub fn class(description: &Description, kind: Kind) -> String {
     }
     inputs.iter().for_each(|i| out += &port(v(i), "Input"));
     outputs.iter().for_each(|i| out += &port(v(i), "Output"));
-    if kind == Kind::CoSimulation {
+    if kind == FmuInterface::CoSimulation {
         let step = d.step.unwrap_or(STEP);
         let _ = writeln!(
             out,
@@ -48,8 +50,8 @@ pub fn class(description: &Description, kind: Kind) -> String {
     let _ = writeln!(out, "  final parameter Real root = begin(unit, {});", numbers(&parameters, true));
     let sizes = |list: &[usize]| list.iter().map(|i| v(i).size()).sum::<usize>();
     let body = match kind {
-        Kind::CoSimulation => co_simulation(sizes(&outputs)),
-        Kind::ModelExchange => model_exchange(d, sizes(&outputs)),
+        FmuInterface::CoSimulation => co_simulation(sizes(&outputs)),
+        FmuInterface::ModelExchange => model_exchange(d, sizes(&outputs)),
     };
     let given = sizes(&inputs);
     let _ = writeln!(out, "  Real given[{given}] \"Inputs in the unit's own units\";");
@@ -61,11 +63,11 @@ pub fn class(description: &Description, kind: Kind) -> String {
     out + "end FMU;\n"
 }
 
-fn title(d: &Description, kind: Kind) -> String {
+fn title(d: &FmuDescription, kind: FmuInterface) -> String {
     let what = if d.description.is_empty() { d.name.clone() } else { format!("{}: {}", d.name, d.description) };
     let version = match d.version {
-        Version::Two => "2.0",
-        Version::Three => "3.0",
+        FmuStandard::Two => "2.0",
+        FmuStandard::Three => "3.0",
     };
     let tool = if d.tool.is_empty() { String::new() } else { format!(", by {}", d.tool) };
     format!("{what} (FMI {version}, {}{tool})", kind.name())
@@ -97,16 +99,16 @@ initial equation
 
 /// The same of a unit that is solved with the circuit: derivatives, event indicators and outputs between events, discrete
 /// values at events.
-fn model_exchange(d: &Description, outputs: usize) -> [String; 2] {
+fn model_exchange(d: &FmuDescription, outputs: usize) -> [String; 2] {
     let (n, z) = (d.states.len(), d.indicators);
-    let discrete = d.of(Causality::Output).into_iter().map(|i| &d.variables[i]).filter(|v| !v.continuous);
-    let discrete: usize = discrete.map(Variable::size).sum();
+    let discrete = d.of(FmuCausality::Output).into_iter().map(|i| &d.variables[i]).filter(|v| !v.continuous);
+    let discrete: usize = discrete.map(FmuVariable::size).sum();
     let (all, at_events) = (n + z + outputs, 2 + n + discrete);
     let nominal: Vec<String> = d.states.iter().map(|s| format!("{:e}", nominal(&d.variables[s.0]))).collect();
     let states = if n == 0 { String::new() } else { format!("(nominal = {{{}}})", nominal.join(", ")) };
     let names: Vec<&str> = d.states.iter().map(|s| d.variables[s.0].name.as_str()).collect();
     let crossings = (1..=z).map(|k| n + k).flat_map(|k| [format!("rates[{k}] > 0"), format!("rates[{k}] <= 0")]);
-    let inputs = d.of(Causality::Input);
+    let inputs = d.of(FmuCausality::Input);
     let mut changes = Vec::new();
     for v in inputs.iter().map(|&i| &d.variables[i]) {
         if !v.passed.is_real() {
@@ -143,21 +145,22 @@ initial equation
     [declared, equations]
 }
 
-fn nominal(v: &Variable) -> f64 {
+fn nominal(v: &FmuVariable) -> f64 {
     v.limits[2].map(f64::abs).filter(|x| *x > 0.0).unwrap_or(1.0)
 }
 
 /// The outputs from what the unit gives.
-fn assigned(d: &Description, kind: Kind, outputs: &[usize]) -> String {
+fn assigned(d: &FmuDescription, kind: FmuInterface, outputs: &[usize]) -> String {
     let n = d.states.len();
-    let (mut at, mut at_event) = if kind == Kind::CoSimulation { (2, 2) } else { (n + d.indicators + 1, 3 + n) };
+    let (mut at, mut at_event) =
+        if kind == FmuInterface::CoSimulation { (2, 2) } else { (n + d.indicators + 1, 3 + n) };
     let mut out = String::new();
     for v in outputs.iter().map(|&i| &d.variables[i]) {
         for (k, element) in subscripted(v).into_iter().enumerate() {
             let from = match kind {
-                Kind::CoSimulation => format!("taken[{}]", at + k),
-                Kind::ModelExchange if v.continuous => format!("rates[{}]", at + k),
-                Kind::ModelExchange => format!("happened[{}]", at_event + k),
+                FmuInterface::CoSimulation => format!("taken[{}]", at + k),
+                FmuInterface::ModelExchange if v.continuous => format!("rates[{}]", at + k),
+                FmuInterface::ModelExchange => format!("happened[{}]", at_event + k),
             };
             let _ = writeln!(out, "  {element} = {};", converted(v, &from, false));
         }
@@ -168,16 +171,16 @@ fn assigned(d: &Description, kind: Kind, outputs: &[usize]) -> String {
 }
 
 /// Elements of a variable as expressions of the circuit, or converted to numbers of the unit.
-fn elements(v: &Variable, reversed: bool) -> Vec<String> {
+fn elements(v: &FmuVariable, reversed: bool) -> Vec<String> {
     subscripted(v).into_iter().map(|e| converted(v, &e, reversed)).collect()
 }
 
 /// An expression in SI from numbers of the unit, or `reversed`.
-fn converted(v: &Variable, e: &str, reversed: bool) -> String {
-    let Scale { factor, offset, .. } = v.scale;
+fn converted(v: &FmuVariable, e: &str, reversed: bool) -> String {
+    let UnitConversion { factor, offset, .. } = v.scale;
     match (v.passed, reversed) {
-        (Passed::Boolean, true) => format!("(if {e} then 1 else 0)"),
-        (Passed::Boolean, false) => format!("{e} > 0.5"),
+        (FmuDataType::Boolean, true) => format!("(if {e} then 1 else 0)"),
+        (FmuDataType::Boolean, false) => format!("{e} > 0.5"),
         (p, false) if !p.is_real() => format!("integer({e} + 0.5)"),
         _ if factor == 1.0 && offset == 0.0 => e.to_owned(),
         (_, true) if offset == 0.0 => format!("{e}/{factor:e}"),
@@ -187,7 +190,7 @@ fn converted(v: &Variable, e: &str, reversed: bool) -> String {
     }
 }
 
-fn subscripted(v: &Variable) -> Vec<String> {
+fn subscripted(v: &FmuVariable) -> Vec<String> {
     let name = name(&v.name);
     if v.dims.is_empty() {
         return vec![name];
@@ -208,24 +211,24 @@ fn list_of(items: impl Iterator<Item = String>) -> String {
     if items.is_empty() { "zeros(0)".to_owned() } else { format!("{{{}}}", items.join(", ")) }
 }
 
-fn ty(v: &Variable) -> &'static str {
+fn ty(v: &FmuVariable) -> &'static str {
     match v.passed {
-        Passed::Boolean => "Boolean",
+        FmuDataType::Boolean => "Boolean",
         p if p.is_real() => "Real",
         _ => "Integer",
     }
 }
 
-fn dims(v: &Variable) -> String {
+fn dims(v: &FmuVariable) -> String {
     let sizes: Vec<String> = v.dims.iter().map(ToString::to_string).collect();
     if sizes.is_empty() { String::new() } else { format!("[{}]", sizes.join(", ")) }
 }
 
-fn port(v: &Variable, direction: &str) -> String {
+fn port(v: &FmuVariable, direction: &str) -> String {
     format!("  Interfaces.{}{direction} {}{}{}{};\n", ty(v), name(&v.name), dims(v), attributes(v, false), comment(v))
 }
 
-fn parameter(v: &Variable) -> String {
+fn parameter(v: &FmuVariable) -> String {
     let value = |x: &f64| match ty(v) {
         "Boolean" => (*x != 0.0).to_string(),
         "Integer" => format!("{x}"),
@@ -250,7 +253,7 @@ fn nested(dims: &[usize], values: &[String]) -> String {
 }
 
 /// Units, and limits of a parameter; those of ports are the business of the circuit.
-fn attributes(v: &Variable, limited: bool) -> String {
+fn attributes(v: &FmuVariable, limited: bool) -> String {
     let each = if v.dims.is_empty() { "" } else { "each " };
     let mut all = Vec::new();
     if !v.scale.si.is_empty() {
@@ -273,7 +276,7 @@ fn attributes(v: &Variable, limited: bool) -> String {
     if all.is_empty() { String::new() } else { format!("({})", all.join(", ")) }
 }
 
-fn comment(v: &Variable) -> String {
+fn comment(v: &FmuVariable) -> String {
     if v.description.is_empty() { String::new() } else { format!(" {}", quoted(&v.description)) }
 }
 

@@ -1,13 +1,13 @@
 //! Signals inside the model: what an equation or a `connect` of its top level gives to a component. What a command suffers
 //! may be suffered there too, as by a valve whose command a controller in the model computes.
 
-use super::{Circuit, ModelInput};
-use bramah_expr::{ExprId, Node as Term, VarId};
-use bramah_model::flat::{Equation as FlatEquation, FlatModel, OriginKind, Type, Variability};
+use super::{CircuitTopology, ModelInput};
+use bramah_expr::{ExprId, ExprNode as Term, VarId};
+use bramah_model::flat::{FlatEquation, FlatModel, OriginKind, ScalarType, Variability};
 use bramah_model::instance::Instance;
 use bramah_model::network::Network;
-use bramah_model::shipped::Shipped;
-use bramah_syntax::ast::{Causality, Class, ClassBody, ElementKind, Equation, EquationKind};
+use bramah_model::shipped::ShippedWorld;
+use bramah_syntax::ast::{CausalityPrefix, Class, ClassBody, ElementKind, Equation, EquationKind};
 use bramah_syntax::diag::{FileId, Sources, Span};
 use bramah_syntax::world::World;
 use std::collections::BTreeMap;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 /// A signal that a component receives.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Link {
+pub struct SignalLink {
     /// The variable that receives it, with its unit as written.
     pub signal: ModelInput,
     /// What it receives, as written.
@@ -30,26 +30,32 @@ pub struct Link {
 }
 
 /// A signal whose statement is known by its place only.
-pub struct Placed {
+pub struct UnresolvedLink {
     signal: ModelInput,
     inputs: Vec<String>,
     span: Span,
 }
 
 /// The signals of a model that are set once, by a statement of their own.
-pub fn placed(circuit: &Circuit, instance: &Instance<'_, '_>, network: &Network, flat: &FlatModel) -> Vec<Placed> {
-    let links = Links { circuit, flat };
-    let mut all: Vec<Placed> = flat.equations.iter().filter_map(|e| links.of_equation(e)).collect();
+pub fn placed(
+    circuit: &CircuitTopology,
+    instance: &Instance<'_, '_>,
+    network: &Network,
+    flat: &FlatModel,
+) -> Vec<UnresolvedLink> {
+    let links = SignalLinkFinder { circuit, flat };
+    let mut all: Vec<UnresolvedLink> = flat.equations.iter().filter_map(|e| links.of_equation(e)).collect();
     let top = network.signals.iter().filter(|p| instance.scope(p.scope).name.is_empty());
     for pair in top {
         let sides = [pair.a, pair.b].map(|i| &instance.variables[i as usize]);
-        let receives = |i: usize| sides[i].causality == Some(Causality::Input) && links.is_of_component(&sides[i].name);
+        let receives =
+            |i: usize| sides[i].causality == Some(CausalityPrefix::Input) && links.is_of_component(&sides[i].name);
         let receiver = (0..2).find(|&i| receives(i) && !receives(1 - i));
         let link = receiver.and_then(|i| links.of_variable(&sides[i].name, &sides[1 - i].name, pair.span));
         all.extend(link);
     }
     let mut statements: BTreeMap<(u32, u32, u32), usize> = BTreeMap::new();
-    let key = |p: &Placed| (p.span.file.0, p.span.start, p.span.end);
+    let key = |p: &UnresolvedLink| (p.span.file.0, p.span.start, p.span.end);
     all.iter().for_each(|p| *statements.entry(key(p)).or_default() += 1);
     // a statement in a loop or between arrays gives to several
     all.retain(|p| statements[&key(p)] == 1);
@@ -57,12 +63,12 @@ pub fn placed(circuit: &Circuit, instance: &Instance<'_, '_>, network: &Network,
 }
 
 /// The same with their statements read.
-pub fn read(placed: Vec<Placed>, sources: &Sources) -> Vec<Link> {
+pub fn read(placed: Vec<UnresolvedLink>, sources: &Sources) -> Vec<SignalLink> {
     let mut files: BTreeMap<FileId, Vec<Class>> = BTreeMap::new();
-    let link = |p: Placed| {
+    let link = |p: UnresolvedLink| {
         let source = sources.get(p.span.file);
         // a class that comes with bramah is read from there, whatever lies over it
-        if Shipped.read(Path::new(&source.path)).is_ok() {
+        if ShippedWorld.read(Path::new(&source.path)).is_ok() {
             return None;
         }
         let parsed = || bramah_syntax::parse(p.span.file, &source.text).tree.classes;
@@ -72,7 +78,7 @@ pub fn read(placed: Vec<Placed>, sources: &Sources) -> Vec<Link> {
         let (a, b) = (a.to_string(), b.to_string());
         let value = if a == p.signal.name { b } else { a };
         let statement = p.span.start as usize..p.span.end as usize;
-        Some(Link { signal: p.signal, value, inputs: p.inputs, file: PathBuf::from(&source.path), statement })
+        Some(SignalLink { signal: p.signal, value, inputs: p.inputs, file: PathBuf::from(&source.path), statement })
     };
     placed.into_iter().filter_map(link).collect()
 }
@@ -89,13 +95,13 @@ fn statement(class: &Class, span: Span) -> Option<&Equation> {
     })
 }
 
-struct Links<'a> {
-    circuit: &'a Circuit,
+struct SignalLinkFinder<'a> {
+    circuit: &'a CircuitTopology,
     flat: &'a FlatModel,
 }
 
-impl Links<'_> {
-    fn of_equation(&self, e: &FlatEquation) -> Option<Placed> {
+impl SignalLinkFinder<'_> {
+    fn of_equation(&self, e: &FlatEquation) -> Option<UnresolvedLink> {
         if e.origin.instance != 0 || e.origin.kind != OriginKind::Declared {
             return None;
         }
@@ -121,7 +127,7 @@ impl Links<'_> {
         self.placed(v, inputs, e.origin.span)
     }
 
-    fn of_variable(&self, receiver: &str, source: &str, span: Span) -> Option<Placed> {
+    fn of_variable(&self, receiver: &str, source: &str, span: Span) -> Option<UnresolvedLink> {
         let (receiver, source) = (self.variable(receiver)?, self.variable(source)?);
         if self.is_input(source) && self.uses(source) == 1 || !self.moves(source) {
             return None;
@@ -131,13 +137,13 @@ impl Links<'_> {
         self.placed(receiver, inputs, span)
     }
 
-    fn placed(&self, receiver: VarId, inputs: Vec<String>, span: Span) -> Option<Placed> {
+    fn placed(&self, receiver: VarId, inputs: Vec<String>, span: Span) -> Option<UnresolvedLink> {
         let v = &self.flat.variables[receiver.index()];
-        let real = v.ty == Type::Real && v.variability == Variability::Continuous && !v.flow;
+        let real = v.ty == ScalarType::Real && v.variability == Variability::Continuous && !v.flow;
         let number = |e: Option<ExprId>| e.and_then(|e| self.flat.exprs.as_num(e));
         let (name, unit) = (v.name.clone(), v.unit.as_deref().unwrap_or("").to_string());
         let signal = ModelInput { name, ty: v.ty, unit, start: None, nominal: number(v.nominal) };
-        real.then_some(Placed { signal, inputs, span })
+        real.then_some(UnresolvedLink { signal, inputs, span })
     }
 
     /// Whether a variable is a component's own and no part of a port of it.

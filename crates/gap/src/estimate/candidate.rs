@@ -1,13 +1,13 @@
 //! A model with hypotheses attached and everything that is free in it: what it leaves of the recordings, and how that
 //! depends on what is free.
 
-use super::super::data::Recording;
+use super::super::data::RecordingData;
 use super::super::policy::{BENT, PIECES};
-use super::super::problem::{Assembled, Chosen};
+use super::super::problem::{AssembledModel, HypothesisValues};
 use super::exponential;
-use super::map::Weights;
-use super::simulation::Run;
-use super::start::Valued;
+use super::map::SignalWeights;
+use super::simulation::RecordingRun;
+use super::start::ParameterisedModel;
 use bramah_expr::VarId;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Something that may be chosen: a parameter in its tolerance, a coefficient or shape of an effect.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Coordinate {
+pub struct FitCoordinate {
     /// Which parameter of the model it is.
     pub parameter: usize,
     /// What is one unit of it: a size of the parameter, or of its logarithm.
@@ -32,15 +32,15 @@ pub struct Coordinate {
     pub prior: Option<(f64, f64)>,
 }
 
-impl Coordinate {
+impl FitCoordinate {
     /// A parameter between bounds, by its value.
     pub fn plain(parameter: usize, scale: f64, low: f64, high: f64) -> Self {
-        Coordinate { parameter, scale, logarithm: false, low: low / scale, high: high / scale, prior: None }
+        FitCoordinate { parameter, scale, logarithm: false, low: low / scale, high: high / scale, prior: None }
     }
 
     /// A positive parameter between bounds, by its logarithm.
     pub fn by_logarithm(parameter: usize, low: f64, high: f64) -> Self {
-        Coordinate { parameter, scale: 1.0, logarithm: true, low: low.ln(), high: high.ln(), prior: None }
+        FitCoordinate { parameter, scale: 1.0, logarithm: true, low: low.ln(), high: high.ln(), prior: None }
     }
 
     /// The parameter's value.
@@ -67,15 +67,15 @@ impl Coordinate {
 
 /// A model with hypotheses attached.
 #[derive(Clone, Debug)]
-pub struct Candidate {
+pub struct CandidateModel {
     /// The hypotheses, with the values that are not free.
-    pub causes: Vec<Chosen>,
+    pub causes: Vec<HypothesisValues>,
     /// Of so many, the first ones, widths are free.
     pub taken: usize,
     /// The model.
-    pub model: Assembled,
+    pub model: AssembledModel,
     /// What is free: tolerances first, then the hypotheses' own in their order.
-    pub coordinates: Vec<Coordinate>,
+    pub coordinates: Vec<FitCoordinate>,
     /// How many coordinates without a prior the hypotheses have of their own: widths are not among them.
     pub own: usize,
     /// Per signal its unit, as written.
@@ -91,21 +91,21 @@ pub struct Candidate {
 
 /// What a model leaves of one recording: per signal measured minus simulated, of the samples behind the beginning; NaN
 /// where nothing was measured.
-pub type Errors = Vec<Vec<f64>>;
+pub type RecordingResiduals = Vec<Vec<f64>>;
 
 /// Sums over samples of the slopes' products with each other, and with the errors.
 #[derive(Clone, Debug)]
-pub struct Products {
+pub struct SensitivityProducts {
     /// Slopes with slopes.
     pub slopes: DMatrix<f64>,
     /// Slopes with errors.
     pub errors: DVector<f64>,
 }
 
-impl Products {
+impl SensitivityProducts {
     /// Sums over no samples.
     pub fn none(width: usize) -> Self {
-        Products { slopes: DMatrix::zeros(width, width), errors: DVector::zeros(width) }
+        SensitivityProducts { slopes: DMatrix::zeros(width, width), errors: DVector::zeros(width) }
     }
 
     fn add(&mut self, row: &[f64], error: f64) {
@@ -115,7 +115,10 @@ impl Products {
 
     /// The same with coordinates behind them that nothing depends on.
     pub fn with_idle(self, width: usize) -> Self {
-        Products { slopes: self.slopes.resize(width, width, 0.0), errors: self.errors.resize_vertically(width, 0.0) }
+        SensitivityProducts {
+            slopes: self.slopes.resize(width, width, 0.0),
+            errors: self.errors.resize_vertically(width, 0.0),
+        }
     }
 
     /// By how much squared errors fall in the linear model where the coordinates move like this.
@@ -124,23 +127,23 @@ impl Products {
     }
 
     /// Adds others, weighed.
-    pub fn add_weighed(&mut self, other: &Products, weight: f64) {
+    pub fn add_weighed(&mut self, other: &SensitivityProducts, weight: f64) {
         self.slopes += &other.slopes * weight;
         self.errors.axpy(weight, &other.errors, 1.0);
     }
 }
 
 /// Sums of coordinates in front with all, and of each group behind them with itself.
-struct Grouped {
+struct GroupedProducts {
     across: DMatrix<f64>,
     errors: DVector<f64>,
     own: Vec<DMatrix<f64>>,
 }
 
-impl Grouped {
+impl GroupedProducts {
     fn none(common: usize, width: usize, groups: &[Range<usize>]) -> Self {
         let own = groups.iter().map(|g| DMatrix::zeros(g.len(), g.len())).collect();
-        Grouped { across: DMatrix::zeros(common, width), errors: DVector::zeros(width), own }
+        GroupedProducts { across: DMatrix::zeros(common, width), errors: DVector::zeros(width), own }
     }
 
     fn add(&mut self, row: &[f64], error: f64, groups: &[Range<usize>]) {
@@ -153,9 +156,9 @@ impl Grouped {
     }
 
     /// The sums of one group with what is in front.
-    fn of(&self, k: usize, group: &Range<usize>) -> Products {
+    fn of(&self, k: usize, group: &Range<usize>) -> SensitivityProducts {
         let (common, len) = (self.across.nrows(), group.len());
-        let mut all = Products::none(common + len);
+        let mut all = SensitivityProducts::none(common + len);
         let beside = self.across.columns(group.start, len);
         all.slopes.view_mut((0, 0), (common, common)).copy_from(&self.across.columns(0, common));
         all.slopes.view_mut((0, common), (common, len)).copy_from(&beside);
@@ -169,11 +172,11 @@ impl Grouped {
 
 /// A model at one point: what it leaves of all train recordings, and how that depends on the coordinates.
 #[derive(Clone, Debug)]
-pub struct Evaluated {
+pub struct ModelEvaluation {
     /// Per recording.
-    pub errors: Vec<Errors>,
+    pub errors: Vec<RecordingResiduals>,
     /// Per recording, piece and signal.
-    pub products: Vec<Vec<Vec<Products>>>,
+    pub products: Vec<Vec<Vec<SensitivityProducts>>>,
     /// Per recording how far its first state is from the model's own start, in sizes.
     pub off: Vec<Vec<f64>>,
     /// Per recording the steps that the simulation took.
@@ -181,25 +184,30 @@ pub struct Evaluated {
 }
 
 /// What came of one recording.
-struct OfRecording {
-    errors: Errors,
+struct RecordingEvaluation {
+    errors: RecordingResiduals,
     /// Per piece and signal.
-    products: Vec<Vec<Products>>,
-    gone: Gone,
+    products: Vec<Vec<SensitivityProducts>>,
+    gone: CompletedRun,
 }
 
 /// A run that came to its end.
-struct Gone {
+struct CompletedRun {
     /// How far its first state is from the model's own start, in sizes.
     off: Vec<f64>,
     /// Steps that it took.
     steps: usize,
 }
 
-impl Evaluated {
+impl ModelEvaluation {
     /// Weighed sums over the pieces wanted, by recording and piece.
-    pub fn sums(&self, width: usize, weights: &Weights, wanted: impl Fn(usize, usize) -> bool) -> Products {
-        let mut sum = Products::none(width);
+    pub fn sums(
+        &self,
+        width: usize,
+        weights: &SignalWeights,
+        wanted: impl Fn(usize, usize) -> bool,
+    ) -> SensitivityProducts {
+        let mut sum = SensitivityProducts::none(width);
         for (number, pieces) in self.products.iter().enumerate() {
             for (_, signals) in pieces.iter().enumerate().filter(|(piece, _)| wanted(number, *piece)) {
                 signals.iter().enumerate().for_each(|(i, p)| sum.add_weighed(p, weights.weight(i)));
@@ -209,9 +217,9 @@ impl Evaluated {
     }
 
     /// Sums of each signal over all recordings.
-    pub fn by_signal(&self, width: usize) -> Vec<Products> {
+    pub fn by_signal(&self, width: usize) -> Vec<SensitivityProducts> {
         let signals = self.errors.first().map_or(0, Vec::len);
-        let mut sums = vec![Products::none(width); signals];
+        let mut sums = vec![SensitivityProducts::none(width); signals];
         for of_piece in self.products.iter().flatten() {
             sums.iter_mut().zip(of_piece).for_each(|(sum, p)| sum.add_weighed(p, 1.0));
         }
@@ -224,7 +232,7 @@ pub fn piece(sample: usize, samples: usize) -> usize {
     (sample * PIECES / samples.max(1)).min(PIECES - 1)
 }
 
-impl Candidate {
+impl CandidateModel {
     /// Values of all parameters of the model.
     pub fn theta(&self, x: &[f64]) -> Vec<f64> {
         let mut theta = self.model.theta.clone();
@@ -256,7 +264,7 @@ impl Candidate {
 
     /// What the model leaves of a recording: of the train recordings the `number`-th, or any other. `None` where it does
     /// not reach the end.
-    pub fn errors(&self, x: &[f64], recording: &Recording, number: Option<usize>) -> Option<Errors> {
+    pub fn errors(&self, x: &[f64], recording: &RecordingData, number: Option<usize>) -> Option<RecordingResiduals> {
         let mut errors = vec![Vec::with_capacity(recording.len()); self.deviations.len()];
         self.run(x, recording, number, false, |errors_of, _| {
             errors.iter_mut().zip(errors_of).for_each(|(all, e)| all.push(*e));
@@ -267,13 +275,13 @@ impl Candidate {
 
     /// What the model leaves of a recording that took no part, where it has values of its own for each recording: each piece
     /// with those that fit the other pieces best. `None` where it does not reach the end.
-    pub fn errors_elsewhere(&self, x: &[f64], recording: &Recording) -> Option<Errors> {
+    pub fn errors_elsewhere(&self, x: &[f64], recording: &RecordingData) -> Option<RecordingResiduals> {
         // the values of the first recording stand for those of this one
-        let is_own = |c: &Coordinate| self.model.own.contains(&(c.parameter, 0));
+        let is_own = |c: &FitCoordinate| self.model.own.contains(&(c.parameter, 0));
         let own: Vec<usize> = (0..x.len()).filter(|&i| is_own(&self.coordinates[i])).collect();
         let mut without = x.to_vec();
         own.iter().for_each(|&i| without[i] = self.coordinates[i].of(0.0));
-        let OfRecording { mut errors, products, .. } = self.evaluate_one(&without, recording, 0, None)?;
+        let RecordingEvaluation { mut errors, products, .. } = self.evaluate_one(&without, recording, 0, None)?;
         let samples = errors.first().map_or(0, Vec::len);
         for k in 0..PIECES {
             let others = products.iter().enumerate().filter(|(piece, _)| *piece != k).map(|(_, signals)| signals);
@@ -287,8 +295,13 @@ impl Candidate {
     }
 
     /// Some coordinates where they fit some pieces best, the others as they are.
-    fn moved<'a>(&self, x: &[f64], own: &[usize], pieces: impl Iterator<Item = &'a Vec<Products>>) -> Vec<f64> {
-        let mut sum = Products::none(x.len());
+    fn moved<'a>(
+        &self,
+        x: &[f64],
+        own: &[usize],
+        pieces: impl Iterator<Item = &'a Vec<SensitivityProducts>>,
+    ) -> Vec<f64> {
+        let mut sum = SensitivityProducts::none(x.len());
         for signals in pieces {
             signals.iter().zip(&self.deviations).for_each(|(p, d)| sum.add_weighed(p, d.powi(-2)));
         }
@@ -305,8 +318,8 @@ impl Candidate {
     }
 
     /// Begins where a model much like it did: states of one name are the same.
-    pub fn begins_as(&mut self, other: &Candidate) {
-        let name = |c: &Candidate, v: VarId| c.model.plan.system.dae.variables[v.index()].name.clone();
+    pub fn begins_as(&mut self, other: &CandidateModel) {
+        let name = |c: &CandidateModel, v: VarId| c.model.plan.system.dae.variables[v.index()].name.clone();
         let known: BTreeMap<String, usize> =
             other.model.plan.state_variables().enumerate().map(|(i, v)| (name(other, v), i)).collect();
         let places: Vec<_> = self.model.plan.state_variables().map(|v| known.get(&name(self, v)).copied()).collect();
@@ -315,7 +328,7 @@ impl Candidate {
     }
 
     /// When the simulation of a train recording stops before its end, s.
-    pub fn stops(&self, x: &[f64], recording: &Recording) -> Option<f64> {
+    pub fn stops(&self, x: &[f64], recording: &RecordingData) -> Option<f64> {
         let mut sample = recording.settled();
         let ends = self.run(x, recording, None, false, |_, _| {
             sample += 1;
@@ -325,13 +338,13 @@ impl Candidate {
     }
 
     /// What the model leaves of the train recordings. `None` where it does not reach the end of one.
-    pub fn all_errors(&self, x: &[f64], train: &[Recording]) -> Option<Vec<Errors>> {
+    pub fn all_errors(&self, x: &[f64], train: &[RecordingData]) -> Option<Vec<RecordingResiduals>> {
         train.par_iter().enumerate().map(|(i, r)| self.errors(x, r, Some(i))).collect()
     }
 
     /// How the simulated signals of a train recording depend on the coordinates: samples by signals by coordinates. `None`
     /// where the model does not reach the end.
-    pub fn slopes(&self, x: &[f64], recording: &Recording, number: usize) -> Option<Vec<f32>> {
+    pub fn slopes(&self, x: &[f64], recording: &RecordingData, number: usize) -> Option<Vec<f32>> {
         let mut all = Vec::with_capacity(recording.len() * self.deviations.len() * x.len());
         self.run(x, recording, Some(number), true, |_, slopes| {
             all.extend(slopes.into_iter().flat_map(|s| s.iter()).map(|v| *v as f32));
@@ -342,9 +355,9 @@ impl Candidate {
 
     /// Weighed squares and the prior at a point, as far as they stay within a bound: a run ends where they pass it. `None`
     /// there, and where the model does not reach the end of a recording.
-    pub fn cost_within(&self, x: &[f64], train: &[Recording], weights: &Weights, bound: f64) -> Option<f64> {
-        let limit = Limit::new(weights, self.prior(x), bound);
-        let one = |(number, recording): (usize, &Recording)| {
+    pub fn cost_within(&self, x: &[f64], train: &[RecordingData], weights: &SignalWeights, bound: f64) -> Option<f64> {
+        let limit = ResidualLimit::new(weights, self.prior(x), bound);
+        let one = |(number, recording): (usize, &RecordingData)| {
             let mut own = 0.0;
             self.run(x, recording, Some(number), false, |errors, _| limit.count(errors, &mut own))?;
             limit.add(own);
@@ -356,20 +369,27 @@ impl Candidate {
     }
 
     /// What it leaves of the train recordings, with slopes.
-    pub fn evaluate(&self, x: &[f64], train: &[Recording]) -> Option<Evaluated> {
+    pub fn evaluate(&self, x: &[f64], train: &[RecordingData]) -> Option<ModelEvaluation> {
         self.evaluated(x, train, None)
     }
 
     /// The same, as far as weighed squares and the prior stay within a bound: a run ends where they pass it.
-    pub fn evaluate_within(&self, x: &[f64], train: &[Recording], weights: &Weights, bound: f64) -> Option<Evaluated> {
-        self.evaluated(x, train, Some(&Limit::new(weights, self.prior(x), bound)))
+    pub fn evaluate_within(
+        &self,
+        x: &[f64],
+        train: &[RecordingData],
+        weights: &SignalWeights,
+        bound: f64,
+    ) -> Option<ModelEvaluation> {
+        self.evaluated(x, train, Some(&ResidualLimit::new(weights, self.prior(x), bound)))
     }
 
-    fn evaluated(&self, x: &[f64], train: &[Recording], limit: Option<&Limit>) -> Option<Evaluated> {
-        let one = |(i, r): (usize, &Recording)| self.evaluate_one(x, r, i, limit);
+    fn evaluated(&self, x: &[f64], train: &[RecordingData], limit: Option<&ResidualLimit>) -> Option<ModelEvaluation> {
+        let one = |(i, r): (usize, &RecordingData)| self.evaluate_one(x, r, i, limit);
         let all: Option<Vec<_>> = train.par_iter().enumerate().map(one).collect();
-        let mut found = Evaluated { errors: Vec::new(), products: Vec::new(), off: Vec::new(), steps: Vec::new() };
-        for OfRecording { errors, products, gone } in all? {
+        let mut found =
+            ModelEvaluation { errors: Vec::new(), products: Vec::new(), off: Vec::new(), steps: Vec::new() };
+        for RecordingEvaluation { errors, products, gone } in all? {
             found.errors.push(errors);
             found.products.push(products);
             found.off.push(gone.off);
@@ -382,14 +402,14 @@ impl Candidate {
     fn evaluate_one(
         &self,
         x: &[f64],
-        recording: &Recording,
+        recording: &RecordingData,
         number: usize,
-        limit: Option<&Limit>,
-    ) -> Option<OfRecording> {
+        limit: Option<&ResidualLimit>,
+    ) -> Option<RecordingEvaluation> {
         let (signals, width) = (self.deviations.len(), self.coordinates.len());
         let samples = recording.len() - recording.settled() - 1;
         let mut errors = vec![Vec::with_capacity(samples); signals];
-        let mut sums = vec![vec![Products::none(width); signals]; PIECES];
+        let mut sums = vec![vec![SensitivityProducts::none(width); signals]; PIECES];
         let (mut sample, mut cost) = (0, 0.0);
         let gone = self.run(x, recording, Some(number), true, |errors_of, slopes| {
             let into = &mut sums[piece(sample, samples)];
@@ -405,14 +425,20 @@ impl Candidate {
         if let Some(limit) = limit {
             limit.add(cost);
         }
-        Some(OfRecording { errors, products: sums, gone })
+        Some(RecordingEvaluation { errors, products: sums, gone })
     }
 
     /// Groups of coordinates that are tried one at a time beside those in front of them all: of each the sums with these,
     /// signal by signal. `None` where the model does not reach the end of a recording.
-    pub fn groups(&self, x: &[f64], train: &[Recording], groups: &[Range<usize>]) -> Option<Vec<Vec<Products>>> {
+    pub fn groups(
+        &self,
+        x: &[f64],
+        train: &[RecordingData],
+        groups: &[Range<usize>],
+    ) -> Option<Vec<Vec<SensitivityProducts>>> {
         let common = groups.first().map_or(0, |g| g.start);
-        let mut sums: Vec<Grouped> = self.deviations.iter().map(|_| Grouped::none(common, x.len(), groups)).collect();
+        let mut sums: Vec<GroupedProducts> =
+            self.deviations.iter().map(|_| GroupedProducts::none(common, x.len(), groups)).collect();
         for (number, recording) in train.iter().enumerate() {
             self.run(x, recording, Some(number), true, |errors_of, slopes| {
                 let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
@@ -429,17 +455,17 @@ impl Candidate {
     fn run(
         &self,
         x: &[f64],
-        recording: &Recording,
+        recording: &RecordingData,
         number: Option<usize>,
         slopes: bool,
         mut at: impl FnMut(&[f64], Option<&DMatrix<f64>>) -> ControlFlow<()>,
-    ) -> Option<Gone> {
+    ) -> Option<CompletedRun> {
         let theta = self.theta_of(x, number);
         let model = &self.model;
-        let acts = |c: &Coordinate| !model.own.iter().any(|own| own.0 == c.parameter && Some(own.1) != number);
-        let moved = |(c, x): (&Coordinate, &f64)| (c.parameter, if acts(c) { c.slope(*x) } else { 0.0 });
+        let acts = |c: &FitCoordinate| !model.own.iter().any(|own| own.0 == c.parameter && Some(own.1) != number);
+        let moved = |(c, x): (&FitCoordinate, &f64)| (c.parameter, if acts(c) { c.slope(*x) } else { 0.0 });
         let moves: Vec<(usize, f64)> = self.coordinates.iter().zip(x).map(moved).collect();
-        let valued = Valued {
+        let valued = ParameterisedModel {
             plan: &model.plan,
             theta: &theta,
             sizes: &model.sizes,
@@ -453,7 +479,7 @@ impl Candidate {
         let from = recording.settled();
         let mut errors = vec![0.0; self.deviations.len()];
         let allowed = number.and_then(|k| self.allowed.get(k)).copied().unwrap_or(usize::MAX);
-        let mut run = Run {
+        let mut run = RecordingRun {
             local: &mut begun.local,
             theta: &theta,
             sizes: &model.sizes,
@@ -471,22 +497,22 @@ impl Candidate {
             errors.iter_mut().zip(signals).for_each(|(e, (y, simulated))| *e = y[k] - simulated);
             at(&errors, slopes)
         })?;
-        Some(Gone { off: begun.off, steps: allowed - run.left })
+        Some(CompletedRun { off: begun.off, steps: allowed - run.left })
     }
 }
 
 /// Weighed squares that runs may come to together.
-struct Limit {
+struct ResidualLimit {
     weight: Vec<f64>,
     bound: f64,
     /// Those of the prior and of runs that have ended.
     gone: AtomicU64,
 }
 
-impl Limit {
-    fn new(weights: &Weights, prior: f64, bound: f64) -> Self {
+impl ResidualLimit {
+    fn new(weights: &SignalWeights, prior: f64, bound: f64) -> Self {
         let weight = (0..weights.square.len()).map(|i| weights.weight(i)).collect();
-        Limit { weight, bound, gone: AtomicU64::new(prior.to_bits()) }
+        ResidualLimit { weight, bound, gone: AtomicU64::new(prior.to_bits()) }
     }
 
     /// Adds the errors of a sample to what a run has come to; whether it may go on.

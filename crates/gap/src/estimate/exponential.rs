@@ -41,17 +41,17 @@ fn product(out: &mut [f64], a: &DMatrix<f64>, b: &[f64], beta: f64) {
     } else if beta != 1.0 {
         out.iter_mut().for_each(|v| *v *= beta);
     }
-    dispatch(Product { out, a: a.as_slice(), b, rows, inner, used: rows });
+    dispatch(MatrixProduct { out, a: a.as_slice(), b, rows, inner, used: rows });
 }
 
-fn dispatch(product: Product) {
+fn dispatch(product: MatrixProduct) {
     if product.rows > 0 && product.inner > 0 {
         pulp::Arch::new().dispatch(product);
     }
 }
 
 /// `out += a b` in the first rows, compiled once for every instruction set; the best one is chosen where it runs.
-struct Product<'a> {
+struct MatrixProduct<'a> {
     out: &'a mut [f64],
     a: &'a [f64],
     b: &'a [f64],
@@ -61,7 +61,7 @@ struct Product<'a> {
 }
 
 // what is no closure is compiled into the function that may use the wide registers
-impl pulp::WithSimd for Product<'_> {
+impl pulp::WithSimd for MatrixProduct<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -73,19 +73,19 @@ impl pulp::WithSimd for Product<'_> {
 /// `out += factor x y'`.
 pub fn add_outer(out: &mut DMatrix<f64>, factor: f64, x: &[f64], y: &[f64]) {
     if !x.is_empty() {
-        pulp::Arch::new().dispatch(Outer { out: out.as_mut_slice(), factor, x, y });
+        pulp::Arch::new().dispatch(OuterProduct { out: out.as_mut_slice(), factor, x, y });
     }
 }
 
 /// `out += factor x y'`, likewise.
-struct Outer<'a> {
+struct OuterProduct<'a> {
     out: &'a mut [f64],
     factor: f64,
     x: &'a [f64],
     y: &'a [f64],
 }
 
-impl pulp::WithSimd for Outer<'_> {
+impl pulp::WithSimd for OuterProduct<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -99,8 +99,8 @@ impl pulp::WithSimd for Outer<'_> {
 
 /// `out += a b` in bands of eight rows and one of what remains, whose sums stay in registers.
 #[inline(always)]
-fn add_product(product: Product) {
-    let Product { out, a, b, rows, inner, used } = product;
+fn add_product(product: MatrixProduct) {
+    let MatrixProduct { out, a, b, rows, inner, used } = product;
     for (to, factors) in out.chunks_exact_mut(rows).zip(b.chunks_exact(inner)) {
         let mut row = 0;
         while row + 8 <= used {
@@ -134,7 +134,7 @@ fn add_band<const N: usize>(to: &mut [f64], a: &[f64], factors: &[f64], rows: us
 
 /// Work space for systems of one size.
 #[derive(Clone, Debug)]
-pub struct Exponential {
+pub struct MatrixExponential {
     small: DMatrix<f64>,
     next: DMatrix<f64>,
     high: DMatrix<f64>,
@@ -151,11 +151,11 @@ pub struct Exponential {
     pub twice: DMatrix<f64>,
 }
 
-impl Exponential {
+impl MatrixExponential {
     /// For so many states.
     pub fn new(states: usize) -> Self {
         let zeros = || DMatrix::zeros(states, states);
-        Exponential {
+        MatrixExponential {
             small: zeros(),
             next: zeros(),
             high: zeros(),
@@ -210,7 +210,7 @@ impl Exponential {
     /// phi(z) = (e^z - 1)/z, and phi(2 z) = (e^z + 1) phi(z)/2; the integral of the integral is h^2 phi_2(h A) with
     /// phi_2(z) = (phi(z) - 1)/z.
     fn scale_and_square(&mut self, a: &DMatrix<f64>, h: f64) {
-        let Exponential { small, next, high, balance: units, transition, integral, twice, .. } = self;
+        let MatrixExponential { small, next, high, balance: units, transition, integral, twice, .. } = self;
         let n = small.nrows();
         (0..n).for_each(|j| (0..n).for_each(|i| small[(i, j)] = a[(i, j)] * (units[j] / units[i])));
         let norm = h * small.column_iter().map(|c| c.iter().map(|v| v.abs()).sum::<f64>()).fold(0.0, f64::max);
@@ -219,7 +219,7 @@ impl Exponential {
         *small *= scale;
         multiply(next, small, small, 0.0);
         multiply(transition, small, next, 0.0);
-        let powers = Powers { x: small, square: next, cube: transition };
+        let powers = MatrixPowers { x: small, square: next, cube: transition };
         powers.series(integral, high, &COEFFICIENTS[..7]);
         powers.series(twice, high, &COEFFICIENTS[1..]);
         *twice *= scale * scale;
@@ -248,13 +248,13 @@ impl Exponential {
 }
 
 /// The first powers of a matrix.
-struct Powers<'a> {
+struct MatrixPowers<'a> {
     x: &'a DMatrix<f64>,
     square: &'a DMatrix<f64>,
     cube: &'a DMatrix<f64>,
 }
 
-impl Powers<'_> {
+impl MatrixPowers<'_> {
     /// c0 + c1 X + ..., up to degree six, as p(X) + X^3 q(X), both quadratic (Paterson and Stockmeyer); `q` is work space.
     fn series(&self, out: &mut DMatrix<f64>, q: &mut DMatrix<f64>, c: &[f64]) {
         let sixth = c.get(6).copied().unwrap_or(0.0);
@@ -280,7 +280,7 @@ mod tests {
     #[test]
     fn a_damped_oscillator_over_a_long_step() {
         let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -100.0, -2.0]);
-        let mut e = Exponential::new(2);
+        let mut e = MatrixExponential::new(2);
         let h = 3.0_f64;
         e.compute(&a, h);
         let w = (100.0_f64 - 1.0).sqrt();
@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn a_very_stiff_matrix_stays_finite() {
         let a = DMatrix::from_row_slice(2, 2, &[-1e9, 1.0, 0.0, -1.0]);
-        let mut e = Exponential::new(2);
+        let mut e = MatrixExponential::new(2);
         e.compute(&a, 1e-3);
         assert!(e.transition.iter().all(|v| v.is_finite()));
         assert!((e.integral[(0, 0)] - 1e-9).abs() < 1e-15);
@@ -307,7 +307,7 @@ mod tests {
         // x' = -x/T + r t has x = r T (t - T (1 - exp(-t/T)))
         let h = 0.5_f64;
         for lag in [1e-4, 0.01, 0.5, 30.0] {
-            let mut e = Exponential::new(1);
+            let mut e = MatrixExponential::new(1);
             e.compute(&DMatrix::from_element(1, 1, -1.0 / lag), h);
             let exact = 2.0 * lag * (h + lag * (-h / lag).exp_m1());
             let ramped = 2.0 * e.twice[(0, 0)];
@@ -320,7 +320,7 @@ mod tests {
     fn units_make_no_difference() {
         let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -100.0, -2.0]);
         let scaled = DMatrix::from_fn(2, 2, |i, j| a[(i, j)] * 1e6_f64.powi(j as i32 - i as i32));
-        let (mut own, mut other) = (Exponential::new(2), Exponential::new(2));
+        let (mut own, mut other) = (MatrixExponential::new(2), MatrixExponential::new(2));
         // the balance goes on from step to step
         (0..4).for_each(|i| other.compute(&scaled, 0.3 + 0.01 * f64::from(i)));
         own.compute(&a, 0.33);
@@ -335,7 +335,7 @@ mod tests {
     #[test]
     fn a_system_is_taken_over_while_it_hardly_moves() {
         let a = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, -100.0, -2.0]);
-        let (mut e, mut fresh) = (Exponential::new(2), Exponential::new(2));
+        let (mut e, mut fresh) = (MatrixExponential::new(2), MatrixExponential::new(2));
         e.compute(&a, 1e-3);
         let first = e.transition.clone();
         e.compute(&(&a * 1.001), 1e-3);

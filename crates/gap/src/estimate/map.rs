@@ -3,10 +3,10 @@
 //! small and independent, and the data speak about parameters too.
 
 use super::super::clock::Deadline;
-use super::super::data::Recording;
+use super::super::data::RecordingData;
 use super::super::policy::{DOUBLINGS, ITERATIONS, LEAST, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
-use super::super::problem::Chosen;
-use super::candidate::{Candidate, Coordinate, Errors, Evaluated, Products};
+use super::super::problem::HypothesisValues;
+use super::candidate::{CandidateModel, FitCoordinate, ModelEvaluation, RecordingResiduals, SensitivityProducts};
 use bramah_analysis::estimate::correlation;
 use nalgebra::{DMatrix, DVector};
 
@@ -23,28 +23,28 @@ const RIDGE: f64 = 1e-9;
 
 /// How much the errors of each signal count.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Weights {
+pub struct SignalWeights {
     /// Per signal the mean square of its errors.
     pub square: Vec<f64>,
     /// Per signal how many samples in a row say the same.
     pub tau: Vec<f64>,
 }
 
-impl Weights {
+impl SignalWeights {
     /// As large and as correlated as errors are.
-    pub fn of(errors: &[Errors], full_scale: &[f64]) -> Self {
+    pub fn of(errors: &[RecordingResiduals], full_scale: &[f64]) -> Self {
         let one = |(i, scale): (usize, &f64)| {
             let square = squares(errors, i) / samples(errors, i).max(1.0);
             (square.max((0.01 * LEAST * scale).powi(2)), tau(errors, i))
         };
         let (square, tau) = full_scale.iter().enumerate().map(one).unzip();
-        Weights { square, tau }
+        SignalWeights { square, tau }
     }
 
     /// As if only the sensors' noise were left.
     pub fn sensors(noise: &[f64], full_scale: &[f64]) -> Self {
         let square = noise.iter().zip(full_scale).map(|(n, f)| n.max(LEAST * f).powi(2)).collect();
-        Weights { square, tau: vec![1.0; noise.len()] }
+        SignalWeights { square, tau: vec![1.0; noise.len()] }
     }
 
     /// What a squared error of a signal counts.
@@ -53,17 +53,17 @@ impl Weights {
     }
 
     /// Sum of weighed squares.
-    pub fn cost(&self, errors: &[Errors]) -> f64 {
+    pub fn cost(&self, errors: &[RecordingResiduals]) -> f64 {
         (0..self.square.len()).map(|i| self.weight(i) * squares(errors, i)).sum()
     }
 }
 
 /// How many samples of a signal in a row say the same.
-fn tau(errors: &[Errors], signal: usize) -> f64 {
+fn tau(errors: &[RecordingResiduals], signal: usize) -> f64 {
     correlation::mean_time(errors.iter().map(|e| e[signal].as_slice()))
 }
 
-fn samples(errors: &[Errors], signal: usize) -> f64 {
+fn samples(errors: &[RecordingResiduals], signal: usize) -> f64 {
     errors.iter().map(|e| finite(&e[signal])).sum()
 }
 
@@ -72,15 +72,15 @@ fn finite(errors: &[f64]) -> f64 {
 }
 
 /// Sum of a signal's squared errors over all recordings.
-pub fn squares(errors: &[Errors], signal: usize) -> f64 {
+pub fn squares(errors: &[RecordingResiduals], signal: usize) -> f64 {
     errors.iter().flat_map(|e| &e[signal]).filter(|v| v.is_finite()).map(|v| v * v).sum()
 }
 
 /// What models are fitted to, and for how long.
 #[derive(Clone, Copy, Debug)]
-pub struct Task<'a> {
+pub struct FitTask<'a> {
     /// The recordings.
-    pub train: &'a [Recording],
+    pub train: &'a [RecordingData],
     /// Full scale of each signal, SI.
     pub full_scale: &'a [f64],
     /// A fit that has no more time stays where it came.
@@ -89,23 +89,29 @@ pub struct Task<'a> {
 
 /// A model at its optimum.
 #[derive(Clone, Debug)]
-pub struct Fit {
+pub struct ModelFit {
     /// The model.
-    pub candidate: Candidate,
+    pub candidate: CandidateModel,
     /// Its coordinates.
     pub x: Vec<f64>,
     /// What it leaves there.
-    pub evaluated: Evaluated,
+    pub evaluated: ModelEvaluation,
     /// How much that counted.
-    pub weights: Weights,
+    pub weights: SignalWeights,
 }
 
-impl Fit {
+impl ModelFit {
     /// Fits a model from `x`: once for each of `rounds`, with weights that the round before left. `first` are those of the
     /// first round, where they are not to be as the errors are at `x`. `None` where the model does not reach the end of a
     /// recording.
-    pub fn of(candidate: Candidate, x: Vec<f64>, task: Task<'_>, first: Option<Weights>, rounds: usize) -> Option<Fit> {
-        let begun = Fit::begun(candidate, x, task, first.as_ref())?;
+    pub fn of(
+        candidate: CandidateModel,
+        x: Vec<f64>,
+        task: FitTask<'_>,
+        first: Option<SignalWeights>,
+        rounds: usize,
+    ) -> Option<ModelFit> {
+        let begun = ModelFit::begun(candidate, x, task, first.as_ref())?;
         let mut fit = begun.clone();
         fit.descend(task, ITERATIONS);
         // by weights that are those of the errors, what costs less may leave more of the signals that count little
@@ -114,7 +120,7 @@ impl Fit {
         }
         for _ in 1..rounds {
             let mut next = fit.clone();
-            next.weights = Weights::of(&fit.evaluated.errors, task.full_scale);
+            next.weights = SignalWeights::of(&fit.evaluated.errors, task.full_scale);
             next.descend(task, ITERATIONS);
             // a weaker weight of the data may lead away from them for good
             if fit.ahead(&next) < 0.0 {
@@ -127,37 +133,42 @@ impl Fit {
 
     /// A model at a point that is fitted with given weights, or with weights as the errors are there. `None` where the model
     /// does not reach the end of a recording.
-    pub fn begun(candidate: Candidate, x: Vec<f64>, task: Task<'_>, weights: Option<&Weights>) -> Option<Fit> {
+    pub fn begun(
+        candidate: CandidateModel,
+        x: Vec<f64>,
+        task: FitTask<'_>,
+        weights: Option<&SignalWeights>,
+    ) -> Option<ModelFit> {
         let evaluated = candidate.evaluate(&x, task.train)?;
-        let weights = weights.cloned().unwrap_or_else(|| Weights::of(&evaluated.errors, task.full_scale));
-        Some(Fit::at(candidate, x, evaluated, weights))
+        let weights = weights.cloned().unwrap_or_else(|| SignalWeights::of(&evaluated.errors, task.full_scale));
+        Some(ModelFit::at(candidate, x, evaluated, weights))
     }
 
     /// A model where it was evaluated.
-    fn at(mut candidate: Candidate, x: Vec<f64>, evaluated: Evaluated, weights: Weights) -> Fit {
+    fn at(mut candidate: CandidateModel, x: Vec<f64>, evaluated: ModelEvaluation, weights: SignalWeights) -> ModelFit {
         candidate.off.clone_from(&evaluated.off);
-        Fit { candidate, x, evaluated, weights }
+        ModelFit { candidate, x, evaluated, weights }
     }
 
     /// Nats by which the data that were fitted and the prior prefer another fit to them, each signal with the variance that
     /// a fit leaves, and as correlated as the more correlated errors are.
-    pub fn ahead(&self, other: &Fit) -> f64 {
+    pub fn ahead(&self, other: &ModelFit) -> f64 {
         let one = |i: usize| {
-            let correlated = |f: &Fit| tau(&f.evaluated.errors, i);
+            let correlated = |f: &ModelFit| tau(&f.evaluated.errors, i);
             let independent = self.samples(i) / correlated(self).max(correlated(other));
-            let square = |f: &Fit| f.mean_square(i).max(f64::MIN_POSITIVE);
+            let square = |f: &ModelFit| f.mean_square(i).max(f64::MIN_POSITIVE);
             0.5 * independent * (square(self) / square(other)).ln()
         };
         (0..self.weights.tau.len()).map(one).sum::<f64>() + self.prior() - other.prior()
     }
 
-    /// The one of two fits that [`Fit::ahead`] prefers.
-    pub fn better_of(self, other: Fit) -> Fit {
+    /// The one of two fits that [`ModelFit::ahead`] prefers.
+    pub fn better_of(self, other: ModelFit) -> ModelFit {
         if self.ahead(&other) > 0.0 { other } else { self }
     }
 
     /// Levenberg-Marquardt with these weights, at most so many iterations, while there is time.
-    pub fn descend(&mut self, task: Task<'_>, iterations: usize) {
+    pub fn descend(&mut self, task: FitTask<'_>, iterations: usize) {
         let mut damping = DAMPING;
         for _ in 0..iterations {
             if task.until.is_over() {
@@ -175,7 +186,7 @@ impl Fit {
     }
 
     /// Where a step that gains leads, damped as far as it must be; `None` where no step gains.
-    fn gained(&self, train: &[Recording], damping: &mut f64) -> Option<Fit> {
+    fn gained(&self, train: &[RecordingData], damping: &mut f64) -> Option<ModelFit> {
         let system = self.system(|_, _| true);
         for _ in 0..TRIALS {
             let x = system.step(&self.candidate.coordinates, &self.x, *damping);
@@ -193,24 +204,24 @@ impl Fit {
 
     /// The model at another point; `None` where it costs no less. A run without slopes takes other steps than one with them,
     /// and their costs differ by the error of the simulation: what is gained is gained with slopes.
-    fn gone(&self, x: Vec<f64>, train: &[Recording]) -> Option<Fit> {
+    fn gone(&self, x: Vec<f64>, train: &[RecordingData]) -> Option<ModelFit> {
         let before = self.cost();
         let evaluated = self.candidate.evaluate_within(&x, train, &self.weights, before)?;
-        let next = Fit::at(self.candidate.clone(), x, evaluated, self.weights.clone());
+        let next = ModelFit::at(self.candidate.clone(), x, evaluated, self.weights.clone());
         (next.cost() < before).then_some(next)
     }
 
     /// Goes further along a step that was taken if the cost still falls there at least half as fast as where it began: where
     /// a sensitivity falls as an effect grows, linear steps are short.
-    fn stretched(self, system: &System, from: &[f64], train: &[Recording]) -> Fit {
-        let along = |s: &System| (0..from.len()).map(|i| s.towards[i] * (self.x[i] - from[i])).sum::<f64>();
+    fn stretched(self, system: &NormalEquations, from: &[f64], train: &[RecordingData]) -> ModelFit {
+        let along = |s: &NormalEquations| (0..from.len()).map(|i| s.towards[i] * (self.x[i] - from[i])).sum::<f64>();
         if along(&self.system(|_, _| true)) < STILL_FALLS * along(system) {
             return self;
         }
         let coordinates = &self.candidate.coordinates;
         let (mut best, mut least) = (self.x.clone(), self.cost());
         for _ in 0..DOUBLINGS {
-            let far = |((c, from), to): ((&Coordinate, &f64), &f64)| (2.0 * to - from).clamp(c.low, c.high);
+            let far = |((c, from), to): ((&FitCoordinate, &f64), &f64)| (2.0 * to - from).clamp(c.low, c.high);
             let tried: Vec<f64> = coordinates.iter().zip(from).zip(&best).map(far).collect();
             match self.candidate.cost_within(&tried, train, &self.weights, least).filter(|c| *c < least) {
                 Some(c) => (best, least) = (tried, c),
@@ -227,12 +238,12 @@ impl Fit {
     }
 
     /// The normal equations of the pieces wanted, by recording and piece.
-    pub fn system(&self, wanted: impl Fn(usize, usize) -> bool) -> System {
-        System::of(self.sums(wanted), &self.candidate.coordinates, &self.x)
+    pub fn system(&self, wanted: impl Fn(usize, usize) -> bool) -> NormalEquations {
+        NormalEquations::of(self.sums(wanted), &self.candidate.coordinates, &self.x)
     }
 
     /// Their weighed sums, without what is known of the coordinates beforehand.
-    pub fn sums(&self, wanted: impl Fn(usize, usize) -> bool) -> Products {
+    pub fn sums(&self, wanted: impl Fn(usize, usize) -> bool) -> SensitivityProducts {
         self.evaluated.sums(self.x.len(), &self.weights, wanted)
     }
 
@@ -257,9 +268,9 @@ impl Fit {
     }
 
     /// Its hypotheses with their fitted values.
-    pub fn causes(&self) -> Vec<Chosen> {
+    pub fn causes(&self) -> Vec<HypothesisValues> {
         let theta = self.candidate.theta(&self.x);
-        let with = |(c, places): (&Chosen, &Vec<usize>)| Chosen {
+        let with = |(c, places): (&HypothesisValues, &Vec<usize>)| HypothesisValues {
             hypothesis: c.hypothesis,
             values: places.iter().map(|&p| theta[p]).collect(),
         };
@@ -283,7 +294,7 @@ impl Fit {
     }
 
     /// Minus half the gradient of some pieces' weighed squares.
-    fn score<'a>(&self, pieces: impl IntoIterator<Item = &'a Vec<Products>>) -> DVector<f64> {
+    fn score<'a>(&self, pieces: impl IntoIterator<Item = &'a Vec<SensitivityProducts>>) -> DVector<f64> {
         let mut sum = DVector::zeros(self.x.len());
         for signals in pieces {
             signals.iter().enumerate().for_each(|(i, p)| sum.axpy(self.weights.weight(i), &p.errors, 1.0));
@@ -294,26 +305,26 @@ impl Fit {
 
 /// Normal equations at a point.
 #[derive(Clone, Debug)]
-pub struct System {
+pub struct NormalEquations {
     information: DMatrix<f64>,
     /// Minus half the gradient.
     towards: DVector<f64>,
 }
 
-impl System {
+impl NormalEquations {
     /// Those of weighed sums over samples at `x`, with what is known of the coordinates beforehand.
-    pub fn of(mut sum: Products, coordinates: &[Coordinate], x: &[f64]) -> System {
+    pub fn of(mut sum: SensitivityProducts, coordinates: &[FitCoordinate], x: &[f64]) -> NormalEquations {
         for (i, (c, x)) in coordinates.iter().zip(x).enumerate() {
             if let Some((mean, sigma)) = c.prior {
                 sum.slopes[(i, i)] += sigma.powi(-2);
                 sum.errors[i] -= (x - mean) / (sigma * sigma);
             }
         }
-        System { information: sum.slopes, towards: sum.errors }
+        NormalEquations { information: sum.slopes, towards: sum.errors }
     }
 
     /// Coordinates that are free to go where the gradient leads, and seen at all.
-    pub fn free(&self, coordinates: &[Coordinate], x: &[f64]) -> Vec<usize> {
+    pub fn free(&self, coordinates: &[FitCoordinate], x: &[f64]) -> Vec<usize> {
         let held = |i: usize| {
             let c = &coordinates[i];
             x[i] <= c.low && self.towards[i] < 0.0 || x[i] >= c.high && self.towards[i] > 0.0
@@ -338,7 +349,7 @@ impl System {
     }
 
     /// Where a damped Gauss-Newton step from `x` leads, within the bounds.
-    pub fn step(&self, coordinates: &[Coordinate], x: &[f64], damping: f64) -> Vec<f64> {
+    pub fn step(&self, coordinates: &[FitCoordinate], x: &[f64], damping: f64) -> Vec<f64> {
         let free = self.free(coordinates, x);
         let mut x = x.to_vec();
         let (unit, matrix) = self.scaled(&free, damping);
@@ -364,7 +375,7 @@ impl System {
         0.5 * (own.sum() - taken).max(0.0)
     }
 
-    fn deviations(&self, coordinates: &[Coordinate], x: &[f64], scores: &[Vec<DVector<f64>>]) -> Vec<f64> {
+    fn deviations(&self, coordinates: &[FitCoordinate], x: &[f64], scores: &[Vec<DVector<f64>>]) -> Vec<f64> {
         let free = self.free(coordinates, x);
         let mut deviations = vec![0.0; x.len()];
         let (unit, matrix) = self.scaled(&free, 0.0);

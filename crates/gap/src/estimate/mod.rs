@@ -10,5 +10,5 @@ pub mod start;
 mod tests;
 pub mod uncertainty;
 
-pub use candidate::{Candidate, Coordinate};
-pub use map::{Fit, System, Task, Weights};
+pub use candidate::{CandidateModel, FitCoordinate};
+pub use map::{FitTask, ModelFit, NormalEquations, SignalWeights};

@@ -3,9 +3,9 @@
 //! serves as long as the model keeps to it. Slopes go along by the variational equation of each linearised step,
 //! S' = A S + B, which has the same exponential.
 
-use super::super::data::{Inputs, Recording};
-use super::exponential::{self, Exponential};
-use bramah_analysis::local::{Local, Plan};
+use super::super::data::{InputSegment, RecordingData};
+use super::exponential::{self, MatrixExponential};
+use bramah_analysis::local::{EvaluationPlan, LocalEvaluator};
 use nalgebra::{DMatrix, DVector};
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -49,7 +49,7 @@ pub fn correction(noise: &[f64], full_scale: &[f64]) -> f64 {
 
 /// How what a linearisation leaves out grows over a step: its weight beside phi_2, which belongs to growth in proportion.
 #[derive(Clone, Copy)]
-enum Remainder {
+enum RemainderGrowth {
     /// The linearisation is that of the beginning: with the square of time. The weight is 2 phi_3, of which 2/3 phi_2 has the
     /// value at zero; of a fast lag it is two thirds, and of what that leaves nothing adds up.
     Square,
@@ -57,18 +57,18 @@ enum Remainder {
     Proportional,
 }
 
-impl Remainder {
+impl RemainderGrowth {
     fn weight(self) -> f64 {
         match self {
-            Remainder::Square => 2.0 / 3.0,
-            Remainder::Proportional => 1.0,
+            RemainderGrowth::Square => 2.0 / 3.0,
+            RemainderGrowth::Proportional => 1.0,
         }
     }
 }
 
 /// How states and outputs depend on what may be chosen.
 #[derive(Clone, Debug)]
-pub struct Slopes {
+pub struct TrajectorySensitivities {
     /// States by choices, in the states' sizes.
     pub states: DMatrix<f64>,
     /// Choices by signals: d y / d choices at the last linearisation.
@@ -84,12 +84,12 @@ pub struct Slopes {
     seen: DMatrix<f64>,
 }
 
-impl Slopes {
+impl TrajectorySensitivities {
     /// Where the states depend on the choices like this.
     pub fn new(states: DMatrix<f64>, moves: Vec<Option<(usize, f64)>>, signals: usize) -> Self {
         let (n, choices) = states.shape();
         let zeros = || DMatrix::zeros(n, choices);
-        Slopes {
+        TrajectorySensitivities {
             states,
             outputs: DMatrix::zeros(choices, signals),
             moves,
@@ -101,7 +101,7 @@ impl Slopes {
     }
 
     /// Takes over how the signals depend on states and parameters.
-    fn look(&mut self, local: &Local, sizes: &[f64]) {
+    fn look(&mut self, local: &LocalEvaluator, sizes: &[f64]) {
         let linear = &local.linear;
         let signals = linear.c.nrows();
         for (i, size) in sizes.iter().enumerate() {
@@ -116,7 +116,7 @@ impl Slopes {
     }
 
     /// Takes over what drives the states where the model was just linearised.
-    fn drive(&mut self, local: &Local, sizes: &[f64]) {
+    fn drive(&mut self, local: &LocalEvaluator, sizes: &[f64]) {
         for (mut column, moved) in self.driven.column_iter_mut().zip(&self.moves) {
             if let Some((parameter, factor)) = moved {
                 let b = local.linear.b.column(*parameter);
@@ -127,7 +127,13 @@ impl Slopes {
 
     /// S over a step whose transition and integral are known, up to where the model was just linearised; `missed`: what the
     /// transition lacks.
-    fn advance(&mut self, local: &Local, exponential: &Exponential, missed: Option<&DMatrix<f64>>, sizes: &[f64]) {
+    fn advance(
+        &mut self,
+        local: &LocalEvaluator,
+        exponential: &MatrixExponential,
+        missed: Option<&DMatrix<f64>>,
+        sizes: &[f64],
+    ) {
         self.ahead.copy_from(&self.driven);
         self.drive(local, sizes);
         // the mean of both ends drives over the step
@@ -149,9 +155,9 @@ impl Slopes {
 }
 
 /// A model on its way through a recording.
-pub struct Run<'a> {
+pub struct RecordingRun<'a> {
     /// The model at the last point.
-    pub local: &'a mut Local,
+    pub local: &'a mut LocalEvaluator,
     /// Values of its parameters.
     pub theta: &'a [f64],
     /// Sizes of its states.
@@ -161,22 +167,22 @@ pub struct Run<'a> {
     /// The state, SI.
     pub state: Vec<f64>,
     /// Slopes, where they are wanted.
-    pub slopes: Option<Slopes>,
+    pub slopes: Option<TrajectorySensitivities>,
     /// Steps that it may still take.
     pub left: usize,
 }
 
-impl Run<'_> {
+impl RecordingRun<'_> {
     /// Goes through samples of a recording; `at` sees the model at each of them, and how its signals depend on the choices
     /// (choices by signals), and may end it there. It ends at the last one. `None` where the model has no value on the way, it
     /// takes more steps than it may, or `at` ended it.
     pub fn along(
         &mut self,
-        recording: &Recording,
+        recording: &RecordingData,
         samples: Range<usize>,
-        mut at: impl FnMut(usize, &Local, Option<&DMatrix<f64>>) -> ControlFlow<()>,
+        mut at: impl FnMut(usize, &LocalEvaluator, Option<&DMatrix<f64>>) -> ControlFlow<()>,
     ) -> Option<()> {
-        let mut stepper = Stepper::new(self.sizes.len(), recording);
+        let mut stepper = ExponentialStepper::new(self.sizes.len(), recording);
         let last = samples.end - 1;
         for k in samples {
             recording.input(k, &mut stepper.u);
@@ -207,7 +213,7 @@ impl Run<'_> {
 }
 
 /// How the scaled matrix where the model was linearised last differs from another one.
-fn differ(out: &mut DMatrix<f64>, run: &Run<'_>, from: &DMatrix<f64>) {
+fn differ(out: &mut DMatrix<f64>, run: &RecordingRun<'_>, from: &DMatrix<f64>) {
     let (a, sizes) = (&run.local.linear.a, run.sizes);
     for (j, mut column) in out.column_iter_mut().enumerate() {
         let from = from.column(j);
@@ -223,16 +229,16 @@ fn is_small(missed: &DMatrix<f64>) -> bool {
 /// Outputs of a model over a recording, from its own start: signals by samples. Its states have these sizes, of which a step
 /// may be corrected by this part. `None` where it does not reach the end.
 pub fn from_start(
-    plan: &Arc<Plan>,
+    plan: &Arc<EvaluationPlan>,
     theta: &[f64],
     (sizes, correction): (&[f64], f64),
-    recording: &Recording,
+    recording: &RecordingData,
 ) -> Option<Vec<Vec<f64>>> {
-    let u = Inputs::new(recording).from;
-    let mut local = Local::start(plan.clone(), recording.times[0], theta, &u).ok()?;
+    let u = InputSegment::new(recording).from;
+    let mut local = LocalEvaluator::start(plan.clone(), recording.times[0], theta, &u).ok()?;
     let mut outputs = vec![Vec::with_capacity(recording.len()); plan.outputs()];
     let state = local.state();
-    let mut run = Run { local: &mut local, theta, sizes, correction, state, slopes: None, left: usize::MAX };
+    let mut run = RecordingRun { local: &mut local, theta, sizes, correction, state, slopes: None, left: usize::MAX };
     run.along(recording, 0..recording.len(), |_, local, _| {
         outputs.iter_mut().zip(&local.outputs).for_each(|(all, y)| all.push(*y));
         ControlFlow::Continue(())
@@ -240,9 +246,9 @@ pub fn from_start(
     Some(outputs)
 }
 
-struct Stepper {
+struct ExponentialStepper {
     /// One for each length of step, in halvings of the distance between two samples.
-    exponentials: Vec<Exponential>,
+    exponentials: Vec<MatrixExponential>,
     /// Scaled matrices of the last linearisation: states by states, states by inputs.
     a: DMatrix<f64>,
     b: DMatrix<f64>,
@@ -251,7 +257,7 @@ struct Stepper {
     change_after: DMatrix<f64>,
     missed: DMatrix<f64>,
     /// That of a step over which the matrix changes much.
-    mean: Exponential,
+    mean: MatrixExponential,
     /// Per length the step that the linearisation served last; 0 where it did not.
     lengths: [f64; DEEPEST as usize + 1],
     /// Halvings of the last step, steps until only the first ones are allowed, and steps that may be shorter than the shortest.
@@ -265,21 +271,21 @@ struct Stepper {
     /// How fast the inputs change the rates.
     ramp: DVector<f64>,
     next: Vec<f64>,
-    inputs: Inputs,
+    inputs: InputSegment,
     u: Vec<f64>,
 }
 
-impl Stepper {
-    fn new(n: usize, recording: &Recording) -> Self {
+impl ExponentialStepper {
+    fn new(n: usize, recording: &RecordingData) -> Self {
         let zeros = || DVector::zeros(n);
-        Stepper {
-            exponentials: vec![Exponential::new(n)],
+        ExponentialStepper {
+            exponentials: vec![MatrixExponential::new(n)],
             a: DMatrix::zeros(n, n),
             b: DMatrix::zeros(n, recording.inputs.len()),
             change_before: DMatrix::zeros(n, n),
             change_after: DMatrix::zeros(n, n),
             missed: DMatrix::zeros(n, n),
-            mean: Exponential::new(n),
+            mean: MatrixExponential::new(n),
             lengths: [0.0; DEEPEST as usize + 1],
             depth: 0,
             spare: MANY.max(recording.len() << DEEP),
@@ -289,13 +295,13 @@ impl Stepper {
             remainder: zeros(),
             ramp: zeros(),
             next: vec![0.0; n],
-            inputs: Inputs::new(recording),
+            inputs: InputSegment::new(recording),
             u: vec![0.0; recording.inputs.len()],
         }
     }
 
     /// From a sample at `t`, where the model has been evaluated (linearised, where there are slopes), to the next.
-    fn advance(&mut self, run: &mut Run<'_>, t: f64, h: f64) -> Option<()> {
+    fn advance(&mut self, run: &mut RecordingRun<'_>, t: f64, h: f64) -> Option<()> {
         const WHOLE: u32 = 1 << DEEPEST;
         let mut linear_here = run.slopes.is_some();
         let mut gone = 0;
@@ -318,7 +324,7 @@ impl Stepper {
             let older = serves && (run.slopes.is_none() || self.serves_slopes(run));
             if older {
                 self.grow();
-                off = self.step(run, t, after, length, Remainder::Proportional);
+                off = self.step(run, t, after, length, RemainderGrowth::Proportional);
             }
             if off > run.correction {
                 if !linear_here {
@@ -330,7 +336,7 @@ impl Stepper {
                 if run.slopes.is_some() {
                     differ(&mut self.change_before, run, &self.exponentials[self.depth as usize].known);
                 }
-                off = self.step(run, t, after, length, Remainder::Square);
+                off = self.step(run, t, after, length, RemainderGrowth::Square);
             }
             let shorter = off > WILD && self.depth < DEEPEST && self.shorter > 0;
             if off > run.correction && self.depth < deepest || shorter {
@@ -365,17 +371,17 @@ impl Stepper {
     fn deepen(&mut self) {
         self.depth += 1;
         if self.exponentials.len() <= self.depth as usize {
-            self.exponentials.push(Exponential::new(self.next.len()));
+            self.exponentials.push(MatrixExponential::new(self.next.len()));
         }
     }
 
-    fn take_rates(&mut self, run: &Run<'_>) {
+    fn take_rates(&mut self, run: &RecordingRun<'_>) {
         let scaled = run.local.rates.iter().zip(run.sizes).map(|(r, s)| r / s);
         self.rate.iter_mut().zip(scaled).for_each(|(to, r)| *to = r);
     }
 
     /// Whether an older linearisation will do for slopes.
-    fn serves_slopes(&mut self, run: &Run<'_>) -> bool {
+    fn serves_slopes(&mut self, run: &RecordingRun<'_>) -> bool {
         let exponential = &self.exponentials[self.depth as usize];
         differ(&mut self.change_before, run, &exponential.known);
         exponential::multiply(&mut self.missed, &exponential.integral, &self.change_before, 0.0);
@@ -384,8 +390,8 @@ impl Stepper {
 
     /// Slopes over a step to where the model was just linearised. The matrix goes straight from one end to the other:
     /// what the transition lacks is integral (A_0 - A) + twice (A_1 - A_0)/h.
-    fn take_slopes(&mut self, run: &mut Run<'_>, length: f64) {
-        let Stepper { exponentials, change_before, change_after, missed, mean, depth, .. } = self;
+    fn take_slopes(&mut self, run: &mut RecordingRun<'_>, length: f64) {
+        let ExponentialStepper { exponentials, change_before, change_after, missed, mean, depth, .. } = self;
         let exponential = &exponentials[*depth as usize];
         differ(change_after, run, &exponential.known);
         *change_after -= &*change_before;
@@ -408,7 +414,7 @@ impl Stepper {
     }
 
     /// Takes over the linearisation.
-    fn linear(&mut self, run: &Run<'_>, length: f64) {
+    fn linear(&mut self, run: &RecordingRun<'_>, length: f64) {
         let (linear, sizes) = (&run.local.linear, run.sizes);
         let n = sizes.len();
         (0..n).for_each(|j| (0..n).for_each(|i| self.a[(i, j)] = linear.a[(i, j)] * sizes[j] / sizes[i]));
@@ -432,7 +438,7 @@ impl Stepper {
 
     /// A step so long after the sample at `t`, corrected by what the linear model leaves out at its end, and the largest
     /// correction of a state, in sizes.
-    fn step(&mut self, run: &mut Run<'_>, t: f64, after: f64, length: f64, grows: Remainder) -> f64 {
+    fn step(&mut self, run: &mut RecordingRun<'_>, t: f64, after: f64, length: f64, grows: RemainderGrowth) -> f64 {
         let exponential = &self.exponentials[self.depth as usize];
         exponential::apply(&mut self.change, &exponential.integral, &self.rate, 0.0);
         if self.ramp.iter().any(|v| *v != 0.0) {

@@ -1,13 +1,13 @@
 //! Where a recording begins: the state that its first samples lead to, by least squares between what they show and the
 //! model's own start. A recording rarely begins where the model does, and no study says where.
 
-use super::super::data::{Inputs, Recording};
+use super::super::data::{InputSegment, RecordingData};
 use super::super::policy::SURE;
-use super::candidate::Errors;
+use super::candidate::RecordingResiduals;
 use super::exponential;
-use super::simulation::{Run, Slopes};
+use super::simulation::{RecordingRun, TrajectorySensitivities};
 use bramah_analysis::estimate::correlation;
-use bramah_analysis::local::{Local, Plan};
+use bramah_analysis::local::{EvaluationPlan, LocalEvaluator};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -31,9 +31,9 @@ const SMALL: f64 = 1e-2;
 
 /// A model with values, and what is known of its states.
 #[derive(Clone, Copy)]
-pub struct Valued<'a> {
+pub struct ParameterisedModel<'a> {
     /// The model.
-    pub plan: &'a Arc<Plan>,
+    pub plan: &'a Arc<EvaluationPlan>,
     /// Values of its parameters.
     pub theta: &'a [f64],
     /// Usual size of each state, SI.
@@ -49,24 +49,29 @@ pub struct Valued<'a> {
 }
 
 /// A model at the last sample of a recording's beginning.
-pub struct Begun {
+pub struct InitialFit {
     /// The model there.
-    pub local: Local,
+    pub local: LocalEvaluator,
     /// How far its first state was from the model's own start, in sizes.
     pub off: Vec<f64>,
     /// Its state, SI.
     pub state: Vec<f64>,
     /// How the state depends on what was asked for.
-    pub slopes: Option<Slopes>,
+    pub slopes: Option<TrajectorySensitivities>,
 }
 
-impl Valued<'_> {
+impl ParameterisedModel<'_> {
     /// Goes through the beginning of a recording. `guess`: how far a model much like it began from its own start. `moves`: the
     /// parameters whose slopes are wanted, and by how much one unit of each moves them. `None` where the model has no value
     /// there.
-    pub fn begin(&self, recording: &Recording, guess: Option<&[f64]>, moves: Option<&[(usize, f64)]>) -> Option<Begun> {
-        let u = Inputs::new(recording).from;
-        let mut local = Local::start(self.plan.clone(), recording.times[0], self.theta, &u).ok()?;
+    pub fn begin(
+        &self,
+        recording: &RecordingData,
+        guess: Option<&[f64]>,
+        moves: Option<&[(usize, f64)]>,
+    ) -> Option<InitialFit> {
+        let u = InputSegment::new(recording).from;
+        let mut local = LocalEvaluator::start(self.plan.clone(), recording.times[0], self.theta, &u).ok()?;
         let own = local.state();
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         let shown: Vec<Option<usize>> = (0..own.len()).map(|i| self.shows(&local, i)).collect();
@@ -83,29 +88,35 @@ impl Valued<'_> {
         let moved = moves.unwrap_or(&[]);
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
             let x = DVector::from_column_slice(g);
-            Some(Tried { beginning: self.through(recording, &mut local, &own, &x, moved)?, x, slopes: true })
+            Some(InitialStateTrial {
+                beginning: self.through(recording, &mut local, &own, &x, moved)?,
+                x,
+                slopes: true,
+            })
         });
-        let setting = Setting { recording, own: &own, loose: &loose };
+        let setting = InitialStateProblem { recording, own: &own, loose: &loose };
         if first.is_none() {
             // a first reading may be false: the model's own start may be nearer
             let begin = |x: DVector<f64>| {
                 let beginning = self.through(recording, &mut local, &own, &x, &[])?;
-                Some(Tried { beginning, x, slopes: false })
+                Some(InitialStateTrial { beginning, x, slopes: false })
             };
             let both = [shown_start, DVector::zeros(own.len())].map(begin);
-            let nearer = |a: Tried, b: Tried| if b.beginning.data() < a.beginning.data() { b } else { a };
+            let nearer = |a: InitialStateTrial, b: InitialStateTrial| {
+                if b.beginning.data() < a.beginning.data() { b } else { a }
+            };
             first = both.into_iter().flatten().reduce(nearer);
             // first as near to the data as the model gets, from there with errors as they are left
             first = first.map(|tried| self.descended(&setting, &mut local, tried, 1.0));
         }
         let scale = first.as_ref()?.beginning.scale();
-        let Tried { beginning: mut best, x, slopes } = self.descended(&setting, &mut local, first?, scale);
+        let InitialStateTrial { beginning: mut best, x, slopes } = self.descended(&setting, &mut local, first?, scale);
         let off = x.as_slice().to_vec();
-        let Some(moves) = moves else { return Some(Begun { local, off, state: best.state, slopes: None }) };
+        let Some(moves) = moves else { return Some(InitialFit { local, off, state: best.state, slopes: None }) };
         if !slopes {
             best = self.through(recording, &mut local, &own, &x, moves)?;
         }
-        Some(Begun {
+        Some(InitialFit {
             local,
             off,
             slopes: Some(best.slopes_of_choices(&loose, scale, moves, self.units.len())),
@@ -114,8 +125,14 @@ impl Valued<'_> {
     }
 
     /// Gauss-Newton steps of the first state, where squared deviations count by `scale`.
-    fn descended(&self, setting: &Setting<'_>, local: &mut Local, mut best: Tried, scale: f64) -> Tried {
-        let Setting { recording, own, loose } = *setting;
+    fn descended(
+        &self,
+        setting: &InitialStateProblem<'_>,
+        local: &mut LocalEvaluator,
+        mut best: InitialStateTrial,
+        scale: f64,
+    ) -> InitialStateTrial {
+        let InitialStateProblem { recording, own, loose } = *setting;
         for _ in 0..ROUNDS {
             let Some(mut step) = best.beginning.step(&best.x, loose, scale) else { break };
             if step.amax() < SMALL {
@@ -135,13 +152,13 @@ impl Valued<'_> {
                 step *= 0.5;
             }
             let Some(beginning) = found else { break };
-            best = Tried { beginning, x: best.x + step, slopes: false };
+            best = InitialStateTrial { beginning, x: best.x + step, slopes: false };
         }
         best
     }
 
     /// Whether what is shown begins elsewhere than the model does.
-    fn begins_elsewhere(&self, local: &Local, recording: &Recording, shown: &[Option<usize>]) -> bool {
+    fn begins_elsewhere(&self, local: &LocalEvaluator, recording: &RecordingData, shown: &[Option<usize>]) -> bool {
         let off = |y: usize, first: f64| (first - local.outputs[y]).abs() > SURE * self.deviations[y];
         shown.iter().flatten().any(|&y| recording.first_value(y).is_some_and(|first| off(y, first)))
     }
@@ -149,7 +166,7 @@ impl Valued<'_> {
     /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
     /// itself begins where the model says, for a wrong law would find any other start for it; but not in a recording that
     /// begins elsewhere with what is shown.
-    fn looseness(&self, local: &Local, own: &[f64], shown: &[Option<usize>], elsewhere: bool) -> DVector<f64> {
+    fn looseness(&self, local: &LocalEvaluator, own: &[f64], shown: &[Option<usize>], elsewhere: bool) -> DVector<f64> {
         let c = &local.linear.c;
         let unmeasured = |i: usize| match own[i].abs() / self.sizes[i] {
             value if value > 0.0 => UNMEASURED * value.min(1.0),
@@ -170,7 +187,7 @@ impl Valued<'_> {
 
     /// The signal that follows a state alone: nothing else, and no input, for that would be a balance of which the state is
     /// a part that may be wrong.
-    fn shows(&self, local: &Local, state: usize) -> Option<usize> {
+    fn shows(&self, local: &LocalEvaluator, state: usize) -> Option<usize> {
         let (c, d) = (&local.linear.c, &local.linear.d);
         let alone = |y: usize| (0..c.ncols()).all(|j| (c[(y, j)] != 0.0) == (j == state));
         let no_input = |y: usize| (self.plan.parameters()..d.ncols()).all(|j| d[(y, j)] == 0.0);
@@ -179,7 +196,7 @@ impl Valued<'_> {
 
     /// How far states are from the model's own start by the first sample that shows them, in their sizes: far from what is
     /// shown, a step of the whole start leads nowhere.
-    fn shown_start(&self, local: &Local, recording: &Recording, shown: &[Option<usize>]) -> DVector<f64> {
+    fn shown_start(&self, local: &LocalEvaluator, recording: &RecordingData, shown: &[Option<usize>]) -> DVector<f64> {
         let off = |i: usize| {
             let y = shown[i]?;
             Some((recording.first_value(y)? - local.outputs[y]) / (local.linear.c[(y, i)] * self.sizes[i]))
@@ -191,24 +208,24 @@ impl Valued<'_> {
     /// The beginning from `x` sizes off the model's own start.
     fn through(
         &self,
-        recording: &Recording,
-        local: &mut Local,
+        recording: &RecordingData,
+        local: &mut LocalEvaluator,
         own: &[f64],
         x: &DVector<f64>,
         moves: &[(usize, f64)],
-    ) -> Option<Beginning> {
+    ) -> Option<InitialPassage> {
         let n = own.len();
         let state: Vec<f64> = (0..n).map(|i| own[i] + x[i] * self.sizes[i]).collect();
         let width = n + moves.len();
         let mut slopes = DMatrix::zeros(n, width);
         slopes.view_mut((0, 0), (n, n)).fill_with_identity();
         let choices = (0..n).map(|_| None).chain(moves.iter().map(|m| Some(*m))).collect();
-        let slopes = Some(Slopes::new(slopes, choices, self.deviations.len()));
+        let slopes = Some(TrajectorySensitivities::new(slopes, choices, self.deviations.len()));
         let mut gram = DMatrix::zeros(n, width + 1);
         let mut row = vec![0.0; width + 1];
-        let mut errors: Errors = vec![Vec::with_capacity(recording.settled() + 1); self.deviations.len()];
+        let mut errors: RecordingResiduals = vec![Vec::with_capacity(recording.settled() + 1); self.deviations.len()];
         let (theta, sizes, correction) = (self.theta, self.sizes, self.correction);
-        let mut run = Run { local, theta, sizes, correction, state, slopes, left: usize::MAX };
+        let mut run = RecordingRun { local, theta, sizes, correction, state, slopes, left: usize::MAX };
         run.along(recording, 0..recording.settled() + 1, |k, local, slopes| {
             let Some(slopes) = slopes else { return ControlFlow::Continue(()) };
             for (i, deviation) in self.deviations.iter().enumerate() {
@@ -224,28 +241,28 @@ impl Valued<'_> {
             ControlFlow::Continue(())
         })?;
         let (state, slopes) = (run.state, run.slopes?.states);
-        let beginning = Beginning { state, slopes, gram, errors };
+        let beginning = InitialPassage { state, slopes, gram, errors };
         beginning.data().is_finite().then_some(beginning)
     }
 }
 
 /// A recording, the model's own start, and how far states may be from it, in their sizes.
 #[derive(Clone, Copy)]
-struct Setting<'a> {
-    recording: &'a Recording,
+struct InitialStateProblem<'a> {
+    recording: &'a RecordingData,
     own: &'a [f64],
     loose: &'a DVector<f64>,
 }
 
 /// A start that was tried, so many sizes off the model's own one; with the slopes that are wanted or without.
-struct Tried {
-    beginning: Beginning,
+struct InitialStateTrial {
+    beginning: InitialPassage,
     x: DVector<f64>,
     slopes: bool,
 }
 
 /// What one passage through the beginning gave.
-struct Beginning {
+struct InitialPassage {
     /// State at its last sample.
     state: Vec<f64>,
     /// How that depends on the first state and on the parameters.
@@ -253,10 +270,10 @@ struct Beginning {
     /// Products of the first state's columns with all columns and with the errors.
     gram: DMatrix<f64>,
     /// Errors by signal, in deviations.
-    errors: Errors,
+    errors: RecordingResiduals,
 }
 
-impl Beginning {
+impl InitialPassage {
     /// Squared errors.
     fn data(&self) -> f64 {
         self.errors.iter().flatten().map(|e| e * e).sum()
@@ -301,7 +318,13 @@ impl Beginning {
     }
 
     /// How the state depends on the parameters, the first state found anew for each: by the implicit function theorem.
-    fn slopes_of_choices(&self, loose: &DVector<f64>, scale: f64, moves: &[(usize, f64)], signals: usize) -> Slopes {
+    fn slopes_of_choices(
+        &self,
+        loose: &DVector<f64>,
+        scale: f64,
+        moves: &[(usize, f64)],
+        signals: usize,
+    ) -> TrajectorySensitivities {
         let (n, m) = (loose.len(), moves.len());
         let direct = self.slopes.columns(n, m);
         let states = match self.information(loose, scale) {
@@ -311,6 +334,6 @@ impl Beginning {
             }
             None => direct.into_owned(),
         };
-        Slopes::new(states, moves.iter().map(|m| Some(*m)).collect(), signals)
+        TrajectorySensitivities::new(states, moves.iter().map(|m| Some(*m)).collect(), signals)
     }
 }

@@ -1,10 +1,10 @@
 //! Simulation from the inputs alone against closed forms, and where a recording is said to begin.
 
-use super::super::data::Recording;
-use super::simulation::{Run, Slopes, from_start};
-use super::start::Valued;
+use super::super::data::RecordingData;
+use super::simulation::{RecordingRun, TrajectorySensitivities, from_start};
+use super::start::ParameterisedModel;
 use bramah_analysis::lift;
-use bramah_analysis::local::{Local, Plan};
+use bramah_analysis::local::{EvaluationPlan, LocalEvaluator};
 use bramah_expr::VarId;
 use nalgebra::DMatrix;
 use std::sync::Arc;
@@ -12,19 +12,19 @@ use std::sync::Arc;
 /// The largest correction that any study lets pass.
 const CORRECTION: f64 = 1e-4;
 
-fn plan(text: &str, parameters: &[&str], outputs: &[&str]) -> Arc<Plan> {
+fn plan(text: &str, parameters: &[&str], outputs: &[&str]) -> Arc<EvaluationPlan> {
     let flat = bramah_model::compile::flatten_text(text, None).value.expect("a model").flat;
     let id = |name: &&str| {
         let i = flat.variables.iter().position(|v| v.name == *name).expect("the model has it");
         VarId(u32::try_from(i).expect("small"))
     };
     let ids = |names: &[&str]| names.iter().map(id).collect::<Vec<_>>();
-    Arc::new(Plan::new(&lift(&flat, &ids(parameters), &ids(outputs))).expect("can be sorted"))
+    Arc::new(EvaluationPlan::new(&lift(&flat, &ids(parameters), &ids(outputs))).expect("can be sorted"))
 }
 
-fn recording(samples: usize, step: f64, input: &[fn(f64) -> f64], signals: &[&dyn Fn(f64) -> f64]) -> Recording {
+fn recording(samples: usize, step: f64, input: &[fn(f64) -> f64], signals: &[&dyn Fn(f64) -> f64]) -> RecordingData {
     let times: Arc<[f64]> = (0..samples).map(|k| k as f64 * step).collect();
-    Recording {
+    RecordingData {
         inputs: input.iter().map(|u| times.iter().map(|t| u(*t)).collect()).collect(),
         linear: vec![true; input.len()],
         signals: signals.iter().map(|y| times.iter().map(|t| y(*t)).collect()).collect(),
@@ -33,7 +33,7 @@ fn recording(samples: usize, step: f64, input: &[fn(f64) -> f64], signals: &[&dy
 }
 
 /// The largest distance of the first output from a closed form.
-fn farthest(plan: &Arc<Plan>, sizes: &[f64], recording: &Recording, exact: impl Fn(f64) -> f64) -> f64 {
+fn farthest(plan: &Arc<EvaluationPlan>, sizes: &[f64], recording: &RecordingData, exact: impl Fn(f64) -> f64) -> f64 {
     let theta = plan.parameter_values();
     let found = from_start(plan, &theta, (sizes, CORRECTION), recording).expect("a trajectory");
     found[0].iter().zip(recording.times.iter()).map(|(y, t)| (y - exact(*t)).abs()).fold(0.0, f64::max)
@@ -77,9 +77,9 @@ fn slopes_go_along() {
     let text = "model M parameter Real a = 1; Real x(start = 1, fixed = true); equation der(x) = -a*x^2; end M;";
     let plan = plan(text, &["a"], &["x"]);
     let recording = recording(101, 0.02, &[], &[]);
-    let mut local = Local::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
-    let slopes = Some(Slopes::new(DMatrix::zeros(1, 1), vec![Some((0, 1.0))], 1));
-    let mut run = Run {
+    let mut local = LocalEvaluator::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
+    let slopes = Some(TrajectorySensitivities::new(DMatrix::zeros(1, 1), vec![Some((0, 1.0))], 1));
+    let mut run = RecordingRun {
         local: &mut local,
         theta: &[1.0],
         sizes: &[1.0],
@@ -106,10 +106,10 @@ fn slopes_pass_corners() {
         equation der(x) = v; der(v) = -g + 1e4*max(-x, 0); end M;";
     let plan = plan(text, &["g"], &["x"]);
     let recording = recording(801, 0.02, &[], &[]);
-    let mut local = Local::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
+    let mut local = LocalEvaluator::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
     let states = DMatrix::from_row_slice(2, 1, &[1.0, 0.0]);
-    let slopes = Some(Slopes::new(states, vec![Some((0, 1.0))], 1));
-    let mut run = Run {
+    let slopes = Some(TrajectorySensitivities::new(states, vec![Some((0, 1.0))], 1));
+    let mut run = RecordingRun {
         local: &mut local,
         theta: &[1.0],
         sizes: &[1.0, 1.0],
@@ -143,9 +143,9 @@ fn slopes_pass_a_snap() {
         let mut recording = recording(100, 0.02, &[], &[]);
         let times = (0..100).map(|k| 0.02 * f64::from(k) + if k > 0 { 0.001 * f64::from(shift) } else { 0.0 });
         recording.times = times.collect::<Vec<_>>().into();
-        let mut local = Local::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
-        let slopes = Some(Slopes::new(DMatrix::zeros(1, 1), vec![Some((0, 1.0))], 1));
-        let mut run = Run {
+        let mut local = LocalEvaluator::start(plan.clone(), 0.0, &[1.0], &[]).expect("starts");
+        let slopes = Some(TrajectorySensitivities::new(DMatrix::zeros(1, 1), vec![Some((0, 1.0))], 1));
+        let mut run = RecordingRun {
             local: &mut local,
             theta: &[1.0],
             sizes: &[1.0],
@@ -166,13 +166,13 @@ fn slopes_pass_a_snap() {
 }
 
 fn valued<'a>(
-    plan: &'a Arc<Plan>,
+    plan: &'a Arc<EvaluationPlan>,
     theta: &'a [f64],
     sizes: &'a [f64],
     deviations: &'a [f64],
     units: &'a [String],
-) -> Valued<'a> {
-    Valued { plan, theta, sizes, correction: CORRECTION, travel: &[0.0, 0.0], units, deviations }
+) -> ParameterisedModel<'a> {
+    ParameterisedModel { plan, theta, sizes, correction: CORRECTION, travel: &[0.0, 0.0], units, deviations }
 }
 
 /// A recording begins where its first samples show it, far from the model's own start as that may be: a pendulum that the

@@ -1,16 +1,16 @@
 //! How far the coordinates of a fit may be off, by the rule of all estimates (`bramah_analysis::estimate`).
 
-use super::super::data::Recording;
-use super::map::Fit;
-use bramah_analysis::estimate::{Linearised, Series, spread};
+use super::super::data::RecordingData;
+use super::map::ModelFit;
+use bramah_analysis::estimate::{LinearizedEstimate, ResidualSeries, spread};
 use nalgebra::{DMatrix, DVector};
 
-impl Fit {
+impl ModelFit {
     /// Standard deviation of each coordinate, in its units; what a bound holds has none. `None` where the model does not reach
     /// the end of a recording.
-    pub fn uncertainty(&self, train: &[Recording]) -> Option<Vec<f64>> {
+    pub fn uncertainty(&self, train: &[RecordingData]) -> Option<Vec<f64>> {
         let free = self.system(|_, _| true).free(&self.candidate.coordinates, &self.x);
-        let mut rows = Rows::default();
+        let mut rows = EstimateRows::default();
         for (number, recording) in train.iter().enumerate() {
             let slopes = self.candidate.slopes(&self.x, recording, number)?;
             self.add_data(&mut rows, number, &slopes, &free);
@@ -18,14 +18,14 @@ impl Fit {
         self.add_known(&mut rows, &free);
         let jacobian = DMatrix::from_row_slice(rows.residual.len(), free.len(), &rows.jacobian);
         let residual = DVector::from_vec(rows.residual);
-        let found = spread(Linearised { jacobian: &jacobian, residual: &residual, series: &rows.series });
+        let found = spread(LinearizedEstimate { jacobian: &jacobian, residual: &residual, series: &rows.series });
         let mut deviations = vec![0.0; self.x.len()];
         free.iter().enumerate().for_each(|(a, &i)| deviations[i] = found.covariance[(a, a)].max(0.0).sqrt());
         Some(deviations)
     }
 
     /// The samples of one recording, signal by signal; slopes are samples by signals by coordinates.
-    fn add_data(&self, rows: &mut Rows, number: usize, slopes: &[f32], free: &[usize]) {
+    fn add_data(&self, rows: &mut EstimateRows, number: usize, slopes: &[f32], free: &[usize]) {
         let (errors, width) = (&self.evaluated.errors[number], self.x.len());
         for (signal, of_signal) in errors.iter().enumerate() {
             let (first, weight) = (rows.residual.len(), self.weights.weight(signal).sqrt());
@@ -33,12 +33,12 @@ impl Fit {
                 let row = &slopes[(k * errors.len() + signal) * width..][..width];
                 rows.add(free.iter().map(|&i| weight * f64::from(row[i])), -weight * error);
             }
-            rows.series.push(Series { recording: number, signal, rows: first..rows.residual.len() });
+            rows.series.push(ResidualSeries { recording: number, signal, rows: first..rows.residual.len() });
         }
     }
 
     /// What is known of the coordinates beforehand.
-    fn add_known(&self, rows: &mut Rows, free: &[usize]) {
+    fn add_known(&self, rows: &mut EstimateRows, free: &[usize]) {
         for (a, &i) in free.iter().enumerate() {
             let coordinate = &self.candidate.coordinates[i];
             if let Some((_, sigma)) = coordinate.prior {
@@ -51,13 +51,13 @@ impl Fit {
 
 /// Rows of an estimate as they are collected.
 #[derive(Default)]
-struct Rows {
+struct EstimateRows {
     jacobian: Vec<f64>,
     residual: Vec<f64>,
-    series: Vec<Series>,
+    series: Vec<ResidualSeries>,
 }
 
-impl Rows {
+impl EstimateRows {
     fn add(&mut self, slopes: impl Iterator<Item = f64>, residual: f64) {
         self.jacobian.extend(slopes);
         self.residual.push(residual);

@@ -2,11 +2,11 @@
 //! sign, and the likelihood ratio as an e-value.
 
 use super::super::policy::{ALPHA, DELTA, LEAST};
-use super::folds::LeftOut;
+use super::folds::LeftOutErrors;
 
 /// What there is to know of the sensors.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Sensors {
+pub struct SensorAccuracy {
     /// Per signal the standard deviation of its noise.
     pub noise: Vec<f64>,
     /// Per signal its full scale.
@@ -15,7 +15,7 @@ pub struct Sensors {
 
 /// Loss differences of two models, block by block: how much better the second one is. Each block and signal has a
 /// variance of its own, so that one wild block cannot decide; blocks in which both are closed do not vote.
-pub fn differences(a: &LeftOut, b: &LeftOut, sensors: &Sensors) -> Vec<f64> {
+pub fn differences(a: &LeftOutErrors, b: &LeftOutErrors, sensors: &SensorAccuracy) -> Vec<f64> {
     let signals = sensors.noise.len();
     let blocks = a.squares.len();
     let mut all = vec![0.0; blocks];
@@ -34,7 +34,7 @@ pub fn differences(a: &LeftOut, b: &LeftOut, sensors: &Sensors) -> Vec<f64> {
 }
 
 /// The mean square of a signal below which its gap is closed, where the best model leaves `best`.
-pub fn closed(sensors: &Sensors, signal: usize, best: f64) -> f64 {
+pub fn closed(sensors: &SensorAccuracy, signal: usize, best: f64) -> f64 {
     sensors.noise[signal].powi(2) + DELTA * DELTA * best + least(sensors, signal)
 }
 
@@ -43,7 +43,7 @@ pub fn loss(square: f64, closed: f64) -> f64 {
     (square.min(f64::MAX.sqrt()) + closed).ln()
 }
 
-fn least(sensors: &Sensors, signal: usize) -> f64 {
+fn least(sensors: &SensorAccuracy, signal: usize) -> f64 {
     (LEAST * sensors.full_scale[signal]).powi(2)
 }
 
@@ -63,7 +63,7 @@ pub fn t_statistic(d: &[f64]) -> f64 {
 /// Log likelihood ratio of left-out data, nats: how much better the second model is, each signal with the variance that
 /// the model leaves. `independent`: per signal how many samples count. If the first model is true, it exceeds log(m/alpha)
 /// with probability below alpha/m (Markov; Vovk, Wang, Annals of Statistics 49, 2021).
-pub fn evidence(a: &LeftOut, b: &LeftOut, independent: &[f64], sensors: &Sensors) -> f64 {
+pub fn evidence(a: &LeftOutErrors, b: &LeftOutErrors, independent: &[f64], sensors: &SensorAccuracy) -> f64 {
     let one = |i: usize| {
         let floor = least(sensors, i);
         let worse = |m: f64| m.min(f64::MAX.sqrt()) + floor;
@@ -78,18 +78,18 @@ pub fn needed(hypotheses: usize) -> f64 {
 }
 
 /// Noise-free gap of a signal, in its unit.
-pub fn signal_gap(left: &LeftOut, signal: usize, sensors: &Sensors) -> f64 {
+pub fn signal_gap(left: &LeftOutErrors, signal: usize, sensors: &SensorAccuracy) -> f64 {
     (left.mean(signal) - sensors.noise[signal].powi(2)).max(0.0).sqrt()
 }
 
 /// Noise-free gap over all signals, in parts of full scale.
-pub fn gap(left: &LeftOut, sensors: &Sensors) -> f64 {
+pub fn gap(left: &LeftOutErrors, sensors: &SensorAccuracy) -> f64 {
     let squares: Vec<f64> = (0..sensors.noise.len()).map(|i| left.mean(i)).collect();
     total_gap(&squares, sensors)
 }
 
 /// The same from the mean square of each signal.
-pub fn total_gap(squares: &[f64], sensors: &Sensors) -> f64 {
+pub fn total_gap(squares: &[f64], sensors: &SensorAccuracy) -> f64 {
     let parts = squares.iter().zip(&sensors.noise).zip(&sensors.full_scale);
     let sum: f64 = parts.map(|((s, noise), scale)| (s - noise * noise).max(0.0) / (scale * scale)).sum();
     (sum / squares.len().max(1) as f64).sqrt()
@@ -99,12 +99,12 @@ pub fn total_gap(squares: &[f64], sensors: &Sensors) -> f64 {
 mod tests {
     use super::*;
 
-    fn sensors() -> Sensors {
-        Sensors { noise: vec![0.0], full_scale: vec![1.0] }
+    fn sensors() -> SensorAccuracy {
+        SensorAccuracy { noise: vec![0.0], full_scale: vec![1.0] }
     }
 
-    fn left(squares: &[f64]) -> LeftOut {
-        LeftOut {
+    fn left(squares: &[f64]) -> LeftOutErrors {
+        LeftOutErrors {
             squares: squares.iter().map(|s| vec![*s]).collect(),
             samples: squares.iter().map(|_| vec![10.0]).collect(),
             errors: Vec::new(),
@@ -147,13 +147,13 @@ mod tests {
         let d = differences(&worse, &better, &sensors());
         assert!(d.iter().filter(|v| **v < 0.0).count() == 1);
         // in another unit the same
-        let scaled = |l: &LeftOut| LeftOut {
+        let scaled = |l: &LeftOutErrors| LeftOutErrors {
             squares: l.squares.iter().map(|s| vec![s[0] * 1e10]).collect(),
             samples: l.samples.clone(),
             errors: Vec::new(),
             dampings: Vec::new(),
         };
-        let in_other = Sensors { noise: vec![0.0], full_scale: vec![1e5] };
+        let in_other = SensorAccuracy { noise: vec![0.0], full_scale: vec![1e5] };
         let other = differences(&scaled(&worse), &scaled(&better), &in_other);
         d.iter().zip(&other).for_each(|(a, b)| assert!((a - b).abs() < 1e-9));
     }

@@ -1,16 +1,16 @@
 //! Held recordings: they take no part in fitting and ranking, and are asked about one hypothesis at a time.
 
-use super::super::data::Recording;
-use super::super::estimate::candidate::Errors;
-use super::super::estimate::{Candidate, Fit};
+use super::super::data::RecordingData;
+use super::super::estimate::candidate::RecordingResiduals;
+use super::super::estimate::{CandidateModel, ModelFit};
 use super::super::policy::{ACCURACY, ALPHA, DELTA, OPENS};
-use super::compare::{Sensors, gap, needed, signal_gap};
-use super::folds::LeftOut;
+use super::compare::{SensorAccuracy, gap, needed, signal_gap};
+use super::folds::LeftOutErrors;
 use super::matched::evidence;
 
 /// What held recordings say of a model against the one before, nothing refitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Asked {
+pub struct HoldoutConfirmation {
     /// Evidence for it, nats.
     pub evidence: f64,
     /// Noise-free gap of the model before, in parts of full scale.
@@ -23,7 +23,7 @@ pub struct Asked {
     pub closes: bool,
 }
 
-impl Asked {
+impl HoldoutConfirmation {
     /// Whether they confirm it. `saved`: nats that it saves of the prior; `hypotheses`: among how many it was found.
     pub fn confirms(&self, saved: f64, hypotheses: usize) -> bool {
         // a corrected model is better than the nominal one, or it is none
@@ -39,47 +39,58 @@ impl Asked {
 }
 
 /// Held recordings.
-pub struct Held<'a> {
-    recordings: &'a [Recording],
+pub struct HoldoutRecordings<'a> {
+    recordings: &'a [RecordingData],
     /// Noise-free gap of the nominal model on them, in parts of full scale.
     nominal: f64,
 }
 
-impl<'a> Held<'a> {
+impl<'a> HoldoutRecordings<'a> {
     /// Those on which the nominal model leaves so much.
-    pub fn new(recordings: &'a [Recording], nominal: &Candidate, x: &[f64], sensors: &Sensors) -> Self {
-        Held { recordings, nominal: gap(&LeftOut::of(all(nominal, x, recordings)), sensors) }
+    pub fn new(recordings: &'a [RecordingData], nominal: &CandidateModel, x: &[f64], sensors: &SensorAccuracy) -> Self {
+        HoldoutRecordings { recordings, nominal: gap(&LeftOutErrors::of(all(nominal, x, recordings)), sensors) }
     }
 
     /// What a model leaves of them.
-    pub fn left_by(&self, fit: &Fit) -> Vec<Errors> {
+    pub fn left_by(&self, fit: &ModelFit) -> Vec<RecordingResiduals> {
         all(&fit.candidate, &fit.x, self.recordings)
     }
 
     /// What they say of a model against the one before, which leaves so much; `None` where there are none.
-    pub fn ask(&self, before: &[Errors], after: &Fit, sensors: &Sensors) -> Option<Asked> {
+    pub fn ask(
+        &self,
+        before: &[RecordingResiduals],
+        after: &ModelFit,
+        sensors: &SensorAccuracy,
+    ) -> Option<HoldoutConfirmation> {
         if self.recordings.is_empty() {
             return None;
         }
         let after = self.left_by(after);
         let evidence = evidence(before, &after, sensors);
-        let (a, b) = (LeftOut::of(before.to_vec()), LeftOut::of(after));
+        let (a, b) = (LeftOutErrors::of(before.to_vec()), LeftOutErrors::of(after));
         let falls = |i: usize| {
             let before = signal_gap(&a, i, sensors);
             let worth = (0.5 * DELTA * before).max(0.5 * ACCURACY * sensors.full_scale[i]);
             before - signal_gap(&b, i, sensors) >= worth
         };
         let closes = (0..sensors.noise.len()).any(falls);
-        Some(Asked { evidence, before: gap(&a, sensors), after: gap(&b, sensors), nominal: self.nominal, closes })
+        Some(HoldoutConfirmation {
+            evidence,
+            before: gap(&a, sensors),
+            after: gap(&b, sensors),
+            nominal: self.nominal,
+            closes,
+        })
     }
 }
 
-fn all(candidate: &Candidate, x: &[f64], recordings: &[Recording]) -> Vec<Errors> {
+fn all(candidate: &CandidateModel, x: &[f64], recordings: &[RecordingData]) -> Vec<RecordingResiduals> {
     recordings.iter().map(|r| of(candidate, x, r)).collect()
 }
 
 /// Errors on a recording that took no part; infinite where the simulation does not reach the end.
-fn of(candidate: &Candidate, x: &[f64], recording: &Recording) -> Errors {
+fn of(candidate: &CandidateModel, x: &[f64], recording: &RecordingData) -> RecordingResiduals {
     let found = if candidate.model.own.is_empty() {
         candidate.errors(x, recording, None)
     } else {

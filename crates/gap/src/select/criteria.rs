@@ -1,18 +1,18 @@
 //! When is a hypothesis taken? When left-out data are sure of it, it is worth a name and it opens nothing; of those, the
 //! simplest among what cannot be told apart. Everything else has its reason.
 
-use super::super::data::Recording;
+use super::super::data::RecordingData;
 use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, SURE};
-use super::compare::{Sensors, differences, loss, needed, t_statistic};
-use super::confirm::Asked;
-use super::matched::{Movable, evidence, refitted};
-use super::weighed::{Weighed, ahead, left_by, saved};
+use super::compare::{SensorAccuracy, differences, loss, needed, t_statistic};
+use super::confirm::HoldoutConfirmation;
+use super::matched::{AdjustableModel, evidence, refitted};
+use super::weighed::{CrossValidatedFit, ahead, left_by, saved};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// A hypothesis beside the model of one step.
 #[derive(Clone, Debug)]
-pub struct Rival {
+pub struct RivalHypothesis {
     /// Which of the problem's hypotheses.
     pub hypothesis: usize,
     /// At how many places it acts.
@@ -22,12 +22,12 @@ pub struct Rival {
     /// For a parameter, by how many of its tolerances it is off: it has to be out of them, whatever it gains.
     pub tolerances: Option<f64>,
     /// The model with it.
-    pub model: Weighed,
+    pub model: CrossValidatedFit,
 }
 
 /// Why a hypothesis was not taken; printed as it is. Gaps are parts of full scale, evidence is in nats.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Reason {
+pub enum RejectionReason {
     /// It was not fitted: others promised more, and the time was over.
     #[error("not weighed: the time was over; `--budget` gives more")]
     Behind,
@@ -48,7 +48,7 @@ pub enum Reason {
         "held recordings do not confirm it: evidence {:.1} nats, gap {:.4} to {:.4} of full scale, nominal {:.4}",
         .0.evidence, .0.before, .0.after, .0.nominal
     )]
-    NotConfirmed(Asked),
+    NotConfirmed(HoldoutConfirmation),
     /// Surely worse than the best: the gap that it leaves, and the best one's.
     #[error("surely worse: leaves {0:.4} of full scale, the best {1:.4}")]
     Beaten(f64, f64),
@@ -65,7 +65,7 @@ pub enum Reason {
 
 /// What left-out data say of a model with a hypothesis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Judged {
+pub struct CrossValidationScore {
     /// t statistic over the blocks.
     pub t: f64,
     /// Evidence of left-out data and prior, nats.
@@ -82,7 +82,7 @@ pub struct Judged {
     opens: bool,
 }
 
-impl Judged {
+impl CrossValidationScore {
     /// Whether it may be taken.
     pub fn accepted(&self) -> bool {
         self.sure && self.may()
@@ -100,57 +100,62 @@ impl Judged {
     }
 
     /// Why it may not be taken.
-    pub fn refused(&self, needed: f64) -> Reason {
+    pub fn refused(&self, needed: f64) -> RejectionReason {
         match () {
-            () if !self.sure => Reason::NotSure(self.evidence, needed),
-            () if !self.worth => Reason::NotWorth,
-            () if !self.has_size() => Reason::NoSize(self.size),
-            () => Reason::Opens(self.gap / self.before),
+            () if !self.sure => RejectionReason::NotSure(self.evidence, needed),
+            () if !self.worth => RejectionReason::NotWorth,
+            () if !self.has_size() => RejectionReason::NoSize(self.size),
+            () => RejectionReason::Opens(self.gap / self.before),
         }
     }
 }
 
 /// What rivals are judged by.
-pub struct Criteria {
+pub struct SelectionCriteria {
     /// The sensors.
-    pub sensors: Sensors,
+    pub sensors: SensorAccuracy,
     /// Noise-free gap of each signal before anything was taken.
     pub first: Vec<f64>,
     /// How many hypotheses there are.
     pub count: usize,
 }
 
-impl Criteria {
+impl SelectionCriteria {
     /// Whether no signal has a gap that could shrink by as much as is worth a name, and no parameter is bent.
-    pub fn nothing_is_worth_it(&self, before: &Weighed) -> bool {
+    pub fn nothing_is_worth_it(&self, before: &CrossValidatedFit) -> bool {
         let left = |i: usize| left_by(&before.left[0], i, &self.sensors);
         (0..self.first.len()).all(|i| self.least(before, i) > left(i)) && !self.is_bent(before)
     }
 
     /// Whether parameters are so far off that an effect which brings them back is worth a name.
-    fn is_bent(&self, before: &Weighed) -> bool {
+    fn is_bent(&self, before: &CrossValidatedFit) -> bool {
         before.fit.prior() > needed(self.count) || before.fit.candidate.is_bent(&before.fit.x)
     }
 
     /// By how much the gap of a signal must shrink to be worth a name: by a part of what it is and was at first, and by the
     /// sensors' accuracy.
-    fn least(&self, before: &Weighed, signal: usize) -> f64 {
+    fn least(&self, before: &CrossValidatedFit, signal: usize) -> f64 {
         let now = left_by(&before.left[0], signal, &self.sensors);
         (DELTA * now).max(0.5 * DELTA * self.first[signal]).max(ACCURACY * self.sensors.full_scale[signal])
     }
 
     /// Whether left-out data are sure of each rival, and whether it is worth a name. Of what is not worth one the evidence is
     /// not refined.
-    pub fn judged(&self, before: &Weighed, rivals: &[Rival], train: &[Recording]) -> Vec<Judged> {
+    pub fn judged(
+        &self,
+        before: &CrossValidatedFit,
+        rivals: &[RivalHypothesis],
+        train: &[RecordingData],
+    ) -> Vec<CrossValidationScore> {
         let (schemes, needed) = (before.left.len(), needed(self.count));
-        let movable = Movable::new(before, train, &self.sensors);
-        let one = |rival: &Rival| {
+        let movable = AdjustableModel::new(before, train, &self.sensors);
+        let one = |rival: &RivalHypothesis| {
             let mut judged = self.worth(before, rival);
             let model = &rival.model;
             judged.t = t_statistic(&differences(&before.left[0], &model.left[0], &self.sensors));
             let with = movable.as_ref().filter(|_| judged.worth && !judged.opens);
-            let refined =
-                with.and_then(|b| Some(refitted(b, &Movable::new(model, train, &self.sensors)?, &self.sensors)));
+            let refined = with
+                .and_then(|b| Some(refitted(b, &AdjustableModel::new(model, train, &self.sensors)?, &self.sensors)));
             judged.evidence = refined.unwrap_or_else(|| {
                 let by = |k: usize| evidence(&before.left[k].errors, &model.left[k].errors, &self.sensors);
                 (0..schemes).map(by).fold(f64::NEG_INFINITY, f64::max) + saved(before, model)
@@ -163,10 +168,10 @@ impl Criteria {
     }
 
     /// The gap of a signal must shrink, or the parameters return to their data sheet.
-    fn worth(&self, before: &Weighed, rival: &Rival) -> Judged {
+    fn worth(&self, before: &CrossValidatedFit, rival: &RivalHypothesis) -> CrossValidationScore {
         let model = &rival.model;
         let closes = |i: usize| {
-            let left = |w: &Weighed| left_by(&w.left[0], i, &self.sensors);
+            let left = |w: &CrossValidatedFit| left_by(&w.left[0], i, &self.sensors);
             left(before) - left(model) >= self.least(before, i)
         };
         let gap = model.gap(&self.sensors);
@@ -174,7 +179,7 @@ impl Criteria {
         let before = before.gap(&self.sensors).max(f64::MIN_POSITIVE);
         let opens = !self.alike(gap, before);
         let (t, evidence) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-        Judged { t, evidence, gap, sure: false, plain: false, worth, size: rival.size, before, opens }
+        CrossValidationScore { t, evidence, gap, sure: false, plain: false, worth, size: rival.size, before, opens }
     }
 
     /// Two models that are one for the user.
@@ -183,24 +188,24 @@ impl Criteria {
     }
 
     /// Nats by which left-out data and the prior prefer the best to another model.
-    pub fn behind(&self, best: &Weighed, other: &Weighed) -> f64 {
+    pub fn behind(&self, best: &CrossValidatedFit, other: &CrossValidatedFit) -> f64 {
         evidence(&other.left[0].errors, &best.left[0].errors, &self.sensors) + saved(other, best)
     }
 
     /// Why a model is surely worse than the best; nothing where it is not.
-    pub fn worse(&self, best: &Weighed, other: &Weighed) -> Option<Reason> {
+    pub fn worse(&self, best: &CrossValidatedFit, other: &CrossValidatedFit) -> Option<RejectionReason> {
         let (gap, least) = (other.gap(&self.sensors), best.gap(&self.sensors));
         let nats = self.behind(best, other);
         let beaten = nats > (1.0 / ALPHA).ln();
         if self.alike(gap, least) {
-            return beaten.then_some(Reason::NatsBehind(nats));
+            return beaten.then_some(RejectionReason::NatsBehind(nats));
         }
         let t = || t_statistic(&differences(&other.left[0], &best.left[0], &self.sensors));
-        (beaten || t() > SURE).then_some(Reason::Beaten(gap, least))
+        (beaten || t() > SURE).then_some(RejectionReason::Beaten(gap, least))
     }
 
     /// Mean loss over blocks and signals: what orders rivals.
-    pub fn score(&self, model: &Weighed, closed: &[f64]) -> f64 {
+    pub fn score(&self, model: &CrossValidatedFit, closed: &[f64]) -> f64 {
         let left = &model.left[0];
         let mut sum = 0.0;
         for (squares, samples) in left.squares.iter().zip(&left.samples) {
@@ -217,9 +222,9 @@ impl Criteria {
     pub fn order(
         &self,
         accepted: &[usize],
-        rivals: &[Rival],
-        judged: &[Judged],
-        reasons: &mut [Option<Reason>],
+        rivals: &[RivalHypothesis],
+        judged: &[CrossValidationScore],
+        reasons: &mut [Option<RejectionReason>],
     ) -> Vec<usize> {
         let Some(&best) = accepted.first() else { return Vec::new() };
         let of = |i: usize| rivals[i].model.gap(&self.sensors);

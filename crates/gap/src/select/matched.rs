@@ -7,13 +7,13 @@
 //! Both models first get a step of all their parameters with the weights that the comparison itself has: what stays on its
 //! data sheet by the weight of coloured errors, not by truth, would count as an effect.
 
-use super::super::data::Recording;
-use super::super::estimate::candidate::{Errors, piece};
-use super::super::estimate::{Fit, System, Weights};
+use super::super::data::RecordingData;
+use super::super::estimate::candidate::{RecordingResiduals, piece};
+use super::super::estimate::{ModelFit, NormalEquations, SignalWeights};
 use super::super::policy::LEAST;
-use super::compare::Sensors;
-use super::folds::{self, Scheme};
-use super::weighed::Weighed;
+use super::compare::SensorAccuracy;
+use super::folds::{self, FoldScheme};
+use super::weighed::CrossValidatedFit;
 use nalgebra::DVector;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex64;
@@ -27,15 +27,15 @@ const SMOOTHED_PART: usize = 10;
 const PASSES: usize = 2;
 
 /// Two models side by side, in parts of full scale.
-struct Pair<'a> {
-    without: &'a [Errors],
-    with: &'a [Errors],
+struct ModelPair<'a> {
+    without: &'a [RecordingResiduals],
+    with: &'a [RecordingResiduals],
     floor: &'a [f64],
 }
 
 /// What a pair comes to.
 #[derive(Clone, Debug, PartialEq)]
-struct Compared {
+struct ModelComparison {
     /// Log likelihood ratio were all samples independent.
     likelihood: f64,
     /// How many samples in a row say the same of the trace.
@@ -44,20 +44,20 @@ struct Compared {
     square: Vec<f64>,
 }
 
-impl Compared {
+impl ModelComparison {
     fn nats(&self) -> f64 {
         self.likelihood / self.time
     }
 
     /// How much a squared error of each signal counts, in its unit.
-    fn weights(&self, full_scale: &[f64]) -> Weights {
+    fn weights(&self, full_scale: &[f64]) -> SignalWeights {
         let square: Vec<f64> = self.square.iter().zip(full_scale).map(|(s, scale)| s * scale * scale).collect();
-        Weights { tau: vec![self.time.max(1.0); square.len()], square }
+        SignalWeights { tau: vec![self.time.max(1.0); square.len()], square }
     }
 }
 
 /// Errors in parts of full scale.
-fn scaled(errors: &[Errors], sensors: &Sensors) -> Vec<Errors> {
+fn scaled(errors: &[RecordingResiduals], sensors: &SensorAccuracy) -> Vec<RecordingResiduals> {
     let signal = |(e, scale): (&Vec<f64>, &f64)| {
         let one = |v: &f64| if v.is_nan() { f64::NAN } else { (v / scale).clamp(-FAR, FAR) };
         e.iter().map(one).collect::<Vec<f64>>()
@@ -66,19 +66,19 @@ fn scaled(errors: &[Errors], sensors: &Sensors) -> Vec<Errors> {
 }
 
 /// Mean square below which nothing is seen, in parts of full scale: that of the noise, and rounding.
-fn floor(sensors: &Sensors) -> Vec<f64> {
+fn floor(sensors: &SensorAccuracy) -> Vec<f64> {
     let one = |(noise, scale): (&f64, &f64)| (noise / scale).powi(2) + LEAST.powi(2);
     sensors.noise.iter().zip(&sensors.full_scale).map(one).collect()
 }
 
-impl Pair<'_> {
-    fn mean_square(errors: &[Errors], signal: usize) -> (f64, f64) {
+impl ModelPair<'_> {
+    fn mean_square(errors: &[RecordingResiduals], signal: usize) -> (f64, f64) {
         let known = || errors.iter().flat_map(|e| &e[signal]).filter(|v| !v.is_nan());
         let count = known().count() as f64;
         (known().map(|v| v * v).sum::<f64>() / count.max(1.0), count)
     }
 
-    fn compared(&self) -> Compared {
+    fn compared(&self) -> ModelComparison {
         let mut likelihood = 0.0;
         let mut square = Vec::new();
         for (j, floor) in self.floor.iter().enumerate() {
@@ -89,12 +89,12 @@ impl Pair<'_> {
         }
         let least = self.floor.iter().zip(&square).map(|(f, s)| f / s).fold(1.0, f64::min);
         let time = self.time(&square).max(least);
-        Compared { likelihood, time, square }
+        ModelComparison { likelihood, time, square }
     }
 
     /// Trace and rest of each recording, per signal in deviations of the rest; nothing where a sample has no value.
-    fn traces(&self, square: &[f64]) -> Vec<(Errors, Errors)> {
-        let one = |(a, c): (&Errors, &Errors)| {
+    fn traces(&self, square: &[f64]) -> Vec<(RecordingResiduals, RecordingResiduals)> {
+        let one = |(a, c): (&RecordingResiduals, &RecordingResiduals)| {
             let mut both = (Vec::new(), Vec::new());
             for ((a, c), s) in a.iter().zip(c).zip(square) {
                 let known = |v: f64| if v.is_finite() { v / s.sqrt() } else { 0.0 };
@@ -129,7 +129,7 @@ impl Pair<'_> {
 
 /// `sum_k d_k' G(k - l) d_l` of one recording, G the covariance of x over lags and signals: by the spectra of both, that of x
 /// averaged over neighbouring frequencies.
-fn in_spectrum(planner: &mut RealFftPlanner<f64>, d: &Errors, x: &Errors) -> f64 {
+fn in_spectrum(planner: &mut RealFftPlanner<f64>, d: &RecordingResiduals, x: &RecordingResiduals) -> f64 {
     let n = d.first().map_or(0, Vec::len);
     let transform = planner.plan_fft_forward(n);
     let mut spectrum = |signal: &Vec<f64>| {
@@ -159,48 +159,60 @@ fn in_spectrum(planner: &mut RealFftPlanner<f64>, d: &Errors, x: &Errors) -> f64
 }
 
 /// Evidence for the second of two models whose errors on data that took no part are these, nats.
-pub fn evidence(without: &[Errors], with: &[Errors], sensors: &Sensors) -> f64 {
+pub fn evidence(without: &[RecordingResiduals], with: &[RecordingResiduals], sensors: &SensorAccuracy) -> f64 {
     let floor = floor(sensors);
     let (without, with) = (scaled(without, sensors), scaled(with, sensors));
-    Pair { without: &without, with: &with, floor: &floor }.compared().nats()
+    ModelPair { without: &without, with: &with, floor: &floor }.compared().nats()
 }
 
 /// A model with what is needed to move its parameters a little.
-pub struct Movable<'a> {
-    model: &'a Weighed,
+pub struct AdjustableModel<'a> {
+    model: &'a CrossValidatedFit,
     /// Per recording the slopes of all errors that were left out: samples by signals by coordinates.
     slopes: Vec<Vec<f32>>,
     /// Left-out errors by scheme.
-    left: Vec<Vec<Errors>>,
+    left: Vec<Vec<RecordingResiduals>>,
 }
 
-impl<'a> Movable<'a> {
+impl<'a> AdjustableModel<'a> {
     /// Runs the model once. `None` where it does not reach the end.
-    pub fn new(model: &'a Weighed, train: &[Recording], sensors: &Sensors) -> Option<Self> {
-        let Fit { candidate, x, .. } = &model.fit;
+    pub fn new(model: &'a CrossValidatedFit, train: &[RecordingData], sensors: &SensorAccuracy) -> Option<Self> {
+        let ModelFit { candidate, x, .. } = &model.fit;
         let slopes: Option<Vec<Vec<f32>>> = train.iter().enumerate().map(|(k, r)| candidate.slopes(x, r, k)).collect();
         let left = model.left.iter().map(|l| scaled(&l.errors, sensors)).collect();
-        Some(Movable { model, slopes: slopes?, left })
+        Some(AdjustableModel { model, slopes: slopes?, left })
     }
 
     /// Where a step leads from the fit when each signal counts so much, and when it counts as in the fit: the difference, for
     /// the data without a fold or, where there is none, for all. The step is damped as much as it must be to lead where the
     /// linear model says; where none does, the fit stays.
-    fn change(&self, scheme: Scheme, without: Option<usize>, damping: Option<f64>, weights: &Weights) -> DVector<f64> {
-        let Fit { candidate, x, evaluated, weights: own, .. } = &self.model.fit;
+    fn change(
+        &self,
+        scheme: FoldScheme,
+        without: Option<usize>,
+        damping: Option<f64>,
+        weights: &SignalWeights,
+    ) -> DVector<f64> {
+        let ModelFit { candidate, x, evaluated, weights: own, .. } = &self.model.fit;
         let Some(damping) = damping else { return DVector::zeros(x.len()) };
-        let step = |weights: &Weights| {
+        let step = |weights: &SignalWeights| {
             let kept = |number, piece| Some(scheme.fold(number, piece)) != without;
             let sum = evaluated.sums(x.len(), weights, kept);
-            System::of(sum, &candidate.coordinates, x).step(&candidate.coordinates, x, damping)
+            NormalEquations::of(sum, &candidate.coordinates, x).step(&candidate.coordinates, x, damping)
         };
         let (new, old) = (step(weights), step(own));
         DVector::from_fn(x.len(), |i, _| new[i] - old[i])
     }
 
     /// Left-out errors with these weights, and the prior there, nats.
-    fn moved(&self, scheme: Scheme, at: usize, weights: &Weights, full_scale: &[f64]) -> (Vec<Errors>, f64) {
-        let Fit { candidate, x, .. } = &self.model.fit;
+    fn moved(
+        &self,
+        scheme: FoldScheme,
+        at: usize,
+        weights: &SignalWeights,
+        full_scale: &[f64],
+    ) -> (Vec<RecordingResiduals>, f64) {
+        let ModelFit { candidate, x, .. } = &self.model.fit;
         let dampings = &self.model.left[at].dampings;
         let fold = |(k, damping): (usize, &Option<f64>)| self.change(scheme, Some(k), *damping, weights);
         let changes: Vec<DVector<f64>> = dampings.iter().enumerate().map(fold).collect();
@@ -225,16 +237,16 @@ impl<'a> Movable<'a> {
 }
 
 /// Evidence of left-out train data and of the prior for the second model, nats: the largest by any scheme.
-pub fn refitted(without: &Movable<'_>, with: &Movable<'_>, sensors: &Sensors) -> f64 {
+pub fn refitted(without: &AdjustableModel<'_>, with: &AdjustableModel<'_>, sensors: &SensorAccuracy) -> f64 {
     let floor = floor(sensors);
-    let one = |(at, scheme): (usize, Scheme)| {
-        let mut compared = Pair { without: &without.left[at], with: &with.left[at], floor: &floor }.compared();
+    let one = |(at, scheme): (usize, FoldScheme)| {
+        let mut compared = ModelPair { without: &without.left[at], with: &with.left[at], floor: &floor }.compared();
         let mut saved = without.model.fit.prior() - with.model.fit.prior();
         for _ in 0..PASSES {
             let now = compared.weights(&sensors.full_scale);
             let (a, prior_a) = without.moved(scheme, at, &now, &sensors.full_scale);
             let (c, prior_c) = with.moved(scheme, at, &now, &sensors.full_scale);
-            compared = Pair { without: &a, with: &c, floor: &floor }.compared();
+            compared = ModelPair { without: &a, with: &c, floor: &floor }.compared();
             saved = prior_a - prior_c;
         }
         compared.nats() + saved
@@ -271,8 +283,8 @@ mod tests {
         }
     }
 
-    fn sensors(signals: usize) -> Sensors {
-        Sensors { noise: vec![0.0; signals], full_scale: vec![1.0; signals] }
+    fn sensors(signals: usize) -> SensorAccuracy {
+        SensorAccuracy { noise: vec![0.0; signals], full_scale: vec![1.0; signals] }
     }
 
     fn ripple(n: usize, size: f64, period: f64) -> Vec<f64> {

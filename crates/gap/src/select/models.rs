@@ -1,11 +1,11 @@
 //! Models with hypotheses attached: what is free in them, and where they begin.
 
-use super::super::effects::{Coefficient, Shape};
-use super::super::estimate::{Candidate, Coordinate};
+use super::super::effects::{EffectCoefficient, ShapeParameter};
+use super::super::estimate::{CandidateModel, FitCoordinate};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{ACCURACY, GRID};
-use super::super::problem::{Chosen, Problem};
-use super::compare::Sensors;
+use super::super::problem::{DiagnosisProblem, HypothesisValues};
+use super::compare::SensorAccuracy;
 use bramah_syntax::diag::Diagnostic;
 
 /// A shape may lie so many times beyond its grid, a width so many times beside its value.
@@ -13,17 +13,17 @@ const BEYOND: f64 = 3.0;
 const WIDER: f64 = 10.0;
 
 /// The sensors of a problem.
-pub fn sensors(problem: &Problem<'_>) -> Sensors {
-    Sensors { noise: problem.noise_floor.clone(), full_scale: problem.full_scale.clone() }
+pub fn sensors(problem: &DiagnosisProblem<'_>) -> SensorAccuracy {
+    SensorAccuracy { noise: problem.noise_floor.clone(), full_scale: problem.full_scale.clone() }
 }
 
 /// A model with these causes, of the first so many with free widths; tolerances, where they are given, at these values.
 pub fn candidate(
-    problem: &Problem<'_>,
-    causes: &[Chosen],
+    problem: &DiagnosisProblem<'_>,
+    causes: &[HypothesisValues],
     tolerances: Option<&[f64]>,
     taken: usize,
-) -> Option<Candidate> {
+) -> Option<CandidateModel> {
     attached(problem, causes, tolerances, taken, causes.len()).ok()
 }
 
@@ -31,7 +31,7 @@ pub fn candidate(
 ///
 /// # Errors
 /// The diagnostics of the compiler.
-pub fn nominal(problem: &Problem<'_>) -> Result<Candidate, Vec<Diagnostic>> {
+pub fn nominal(problem: &DiagnosisProblem<'_>) -> Result<CandidateModel, Vec<Diagnostic>> {
     attached(problem, &[], None, 0, 0)
 }
 
@@ -40,20 +40,20 @@ pub fn nominal(problem: &Problem<'_>) -> Result<Candidate, Vec<Diagnostic>> {
 /// # Errors
 /// The diagnostics of the compiler.
 pub fn attached(
-    problem: &Problem<'_>,
-    causes: &[Chosen],
+    problem: &DiagnosisProblem<'_>,
+    causes: &[HypothesisValues],
     tolerances: Option<&[f64]>,
     taken: usize,
     shapes: usize,
-) -> Result<Candidate, Vec<Diagnostic>> {
+) -> Result<CandidateModel, Vec<Diagnostic>> {
     let mut model = problem.assembled(causes, &[], shapes)?;
     if let Some(values) = tolerances {
         model.theta[model.free.clone()].copy_from_slice(values);
     }
-    let hypothesis = |c: &Chosen| &problem.hypotheses[c.hypothesis];
-    let mut coordinates: Vec<Coordinate> = Vec::new();
+    let hypothesis = |c: &HypothesisValues| &problem.hypotheses[c.hypothesis];
+    let mut coordinates: Vec<FitCoordinate> = Vec::new();
     for (i, t) in problem.tolerances.iter().enumerate() {
-        let mut c = Coordinate::plain(i, t.sigma, t.min, t.max);
+        let mut c = FitCoordinate::plain(i, t.sigma, t.min, t.max);
         c.prior = (!t.free).then_some((t.nominal / t.sigma, 1.0));
         coordinates.push(c);
     }
@@ -69,7 +69,7 @@ pub fn attached(
         let coefficients = h.coefficients.iter().zip(linear).filter_map(|(c, &p)| coefficient(c, p));
         let is_taken = k < taken;
         let shapes = h.shapes.iter().zip(shaped).filter_map(|(s, &p)| shape(s, p, is_taken));
-        let of_cause: Vec<Coordinate> = coefficients.chain(shapes).collect();
+        let of_cause: Vec<FitCoordinate> = coefficients.chain(shapes).collect();
         // a width has a prior, and is no size of the effect
         own += of_cause.iter().filter(|c| c.prior.is_none()).count();
         coordinates.extend(of_cause);
@@ -78,36 +78,36 @@ pub fn attached(
     let deviations = problem.noise_floor.iter().zip(&problem.full_scale).map(deviation).collect();
     let units = problem.signals.iter().map(|s| problem.unit(s)).collect();
     let (off, allowed) = (Vec::new(), Vec::new());
-    Ok(Candidate { causes: causes.to_vec(), taken, model, coordinates, own, units, deviations, off, allowed })
+    Ok(CandidateModel { causes: causes.to_vec(), taken, model, coordinates, own, units, deviations, off, allowed })
 }
 
 /// A share of a whole is not free: an effect is there or not.
-fn coefficient(c: &Coefficient, parameter: usize) -> Option<Coordinate> {
+fn coefficient(c: &EffectCoefficient, parameter: usize) -> Option<FitCoordinate> {
     let bound = |b: Option<f64>, none: f64| b.unwrap_or(none);
     let free = c.whole().is_none();
     free.then(|| {
-        Coordinate::plain(parameter, c.nominal.abs(), bound(c.min, f64::NEG_INFINITY), bound(c.max, f64::INFINITY))
+        FitCoordinate::plain(parameter, c.nominal.abs(), bound(c.min, f64::NEG_INFINITY), bound(c.max, f64::INFINITY))
     })
 }
 
 /// A shape with one value is a width: it is free once its effect is taken, so that no second effect makes up for a corner
 /// of another form.
-fn shape(s: &Shape, parameter: usize, is_taken: bool) -> Option<Coordinate> {
+fn shape(s: &ShapeParameter, parameter: usize, is_taken: bool) -> Option<FitCoordinate> {
     let (least, most) = s.grid.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, m), x| (l.min(*x), m.max(*x)));
     let (min, max) = (s.min.unwrap_or(f64::NEG_INFINITY), s.max.unwrap_or(f64::INFINITY));
     if s.grid.len() < 2 {
         let free = is_taken && least > 0.0;
         return free.then(|| {
             let widest = s.occurs.unwrap_or(0.0).max(most * WIDER);
-            let width = Coordinate::by_logarithm(parameter, min.max(least / WIDER), max.min(widest));
-            Coordinate { prior: Some((least.ln(), WIDER.ln())), ..width }
+            let width = FitCoordinate::by_logarithm(parameter, min.max(least / WIDER), max.min(widest));
+            FitCoordinate { prior: Some((least.ln(), WIDER.ln())), ..width }
         });
     }
     Some(if least > 0.0 {
-        Coordinate::by_logarithm(parameter, min.max(least / BEYOND), max.min(most * BEYOND))
+        FitCoordinate::by_logarithm(parameter, min.max(least / BEYOND), max.min(most * BEYOND))
     } else {
         let width = most - least;
-        Coordinate::plain(parameter, width, min.max(least - width), max.min(most + width))
+        FitCoordinate::plain(parameter, width, min.max(least - width), max.min(most + width))
     })
 }
 
@@ -116,7 +116,7 @@ fn shape(s: &Shape, parameter: usize, is_taken: bool) -> Option<Coordinate> {
 pub fn beginnings(h: &Hypothesis) -> Vec<Vec<f64>> {
     // what makes no linear model where it vanishes begins at its usual size
     let size = if h.changes_order { 1.0 } else { 0.0 };
-    let value = |c: &Coefficient| match c.whole() {
+    let value = |c: &EffectCoefficient| match c.whole() {
         Some(whole) => whole,
         None => (c.off + size * c.nominal).clamp(c.min.unwrap_or(f64::MIN), c.max.unwrap_or(f64::MAX)),
     };

@@ -2,21 +2,21 @@
 //! no name says more.
 
 use super::super::clock::{Budget, Deadline};
-use super::super::data::Recording;
-use super::super::estimate::{Candidate, Fit};
+use super::super::data::RecordingData;
+use super::super::estimate::{CandidateModel, ModelFit};
 use super::super::hypotheses::Hypothesis;
 use super::super::policy::{EFFECTS, SEEN, SETTLING};
-use super::super::problem::{Chosen, Problem, Tolerance};
-use super::choose::{Chooser, Taken, Trial};
+use super::super::problem::{DiagnosisProblem, HypothesisValues, ToleranceParameter};
+use super::choose::{AcceptedEffect, EffectSelector, HypothesisTrial};
 use super::compare::needed;
-use super::confirm::Held;
-use super::criteria::{Criteria, Judged, Reason, Rival};
+use super::confirm::HoldoutRecordings;
+use super::criteria::{CrossValidationScore, RejectionReason, RivalHypothesis, SelectionCriteria};
 use super::models;
 use super::rivals::fitted;
-use super::screen::{Ground, screened};
-use super::weighed::{Weighed, ahead, as_in, left_by, settled, weighed, widened};
+use super::screen::{ScreeningContext, screened};
+use super::weighed::{CrossValidatedFit, ahead, as_in, left_by, settled, weighed, widened};
 use bramah_syntax::diag::Diagnostic;
-use partners::Explanation;
+use partners::EffectExplanation;
 use std::fmt;
 use std::ops::ControlFlow;
 
@@ -51,7 +51,7 @@ impl fmt::Display for Stage {
 
 /// Why there is no verdict.
 #[derive(Clone, Debug)]
-pub enum Trouble {
+pub enum DiagnosisError {
     /// The nominal model could not be compiled with its parameters free.
     Model(Vec<Diagnostic>),
     /// It does not reach the end of a recording: the file, and when it stops, s.
@@ -61,15 +61,15 @@ pub enum Trouble {
 }
 
 /// Hears of each stage as it begins, and may end the search there.
-pub type Progress<'a> = &'a mut dyn FnMut(Stage) -> ControlFlow<()>;
+pub type DiagnosisProgress<'a> = &'a mut dyn FnMut(Stage) -> ControlFlow<()>;
 
 /// Passes stages on; once it was asked to stop, no stage begins.
-struct Watch<'a> {
-    progress: Progress<'a>,
+struct StageWatch<'a> {
+    progress: DiagnosisProgress<'a>,
     stopped: bool,
 }
 
-impl Watch<'_> {
+impl StageWatch<'_> {
     fn begin(&mut self, stage: Stage) -> Option<()> {
         self.stopped = self.stopped || (self.progress)(stage).is_break();
         (!self.stopped).then_some(())
@@ -77,34 +77,34 @@ impl Watch<'_> {
 }
 
 /// What a search came to.
-pub struct Found {
+pub struct EffectSearchResult {
     /// The model within its tolerances.
-    pub base: Weighed,
+    pub base: CrossValidatedFit,
     /// With everything that was taken.
-    pub last: Weighed,
+    pub last: CrossValidatedFit,
     /// What was taken, in the order of the last model's causes.
-    pub taken: Vec<Taken>,
+    pub taken: Vec<AcceptedEffect>,
     /// A shape that says more of what is left than any effect.
-    pub shape: Option<Taken>,
+    pub shape: Option<AcceptedEffect>,
     /// Share of the hypotheses that these recordings would show at their usual size.
     pub visible: f64,
     /// What the judge says of an effect that was asked for.
     pub asked: Option<String>,
     /// Everything that was weighed, best of each step first.
-    pub trials: Vec<Trial>,
+    pub trials: Vec<HypothesisTrial>,
 }
 
 /// A search on its way.
-struct Search<'a> {
-    problem: &'a Problem<'a>,
-    chooser: Chooser<'a>,
+struct EffectSearch<'a> {
+    problem: &'a DiagnosisProblem<'a>,
+    chooser: EffectSelector<'a>,
     /// Share of the hypotheses of the first step that would be seen.
     visible: Option<f64>,
-    trials: Vec<Trial>,
+    trials: Vec<HypothesisTrial>,
     /// What the screen left aside in this step.
-    passed: Vec<Trial>,
+    passed: Vec<HypothesisTrial>,
     /// What is worth it in the last step, where left-out data were sure of nothing.
-    undecided: Vec<Rival>,
+    undecided: Vec<RivalHypothesis>,
     /// Shapes were worth a fit beside the last model.
     shape_says_more: bool,
     /// When the time is over.
@@ -114,14 +114,14 @@ struct Search<'a> {
 /// Searches, for so long; held recordings only confirm.
 ///
 /// # Errors
-/// [`Trouble`].
+/// [`DiagnosisError`].
 pub fn search<'a>(
-    problem: &'a Problem<'a>,
-    held: &'a [Recording],
+    problem: &'a DiagnosisProblem<'a>,
+    held: &'a [RecordingData],
     budget: Option<Budget<'a>>,
-    progress: Progress<'_>,
-) -> Result<Found, Trouble> {
-    let mut watch = Watch { progress, stopped: false };
+    progress: DiagnosisProgress<'_>,
+) -> Result<EffectSearchResult, DiagnosisError> {
+    let mut watch = StageWatch { progress, stopped: false };
     let (mut search, mut base) = begun(problem, held, budget, &mut watch)?;
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
@@ -144,7 +144,7 @@ pub fn search<'a>(
         search.drop_needless(&mut last, &mut taken);
         let reconsiders = step == 2 && taken.len() == 2;
         if reconsiders {
-            let stands = search.reconsidered(&base, Explanation { model: last, taken });
+            let stands = search.reconsidered(&base, EffectExplanation { model: last, taken });
             (last, taken) = (stands.model, stands.taken);
         }
         // what stands alone has been asked for a second effect
@@ -160,51 +160,54 @@ pub fn search<'a>(
         taken.clear();
     }
     if watch.stopped {
-        return Err(Trouble::Stopped);
+        return Err(DiagnosisError::Stopped);
     }
     let visible = search.visible.unwrap_or(0.0);
-    Ok(Found { base, last, taken, shape, visible, asked: None, trials: search.trials })
+    Ok(EffectSearchResult { base, last, taken, shape, visible, asked: None, trials: search.trials })
 }
 
 /// One hypothesis beside the model within its tolerances, taken whether it may be or not, with the reason why not; `None`
 /// where the model has no values with it.
 ///
 /// # Errors
-/// [`Trouble`].
+/// [`DiagnosisError`].
 pub fn explained(
-    problem: &Problem<'_>,
-    held: &[Recording],
+    problem: &DiagnosisProblem<'_>,
+    held: &[RecordingData],
     hypothesis: usize,
-    progress: Progress<'_>,
-) -> Result<Option<Found>, Trouble> {
-    let mut watch = Watch { progress, stopped: false };
+    progress: DiagnosisProgress<'_>,
+) -> Result<Option<EffectSearchResult>, DiagnosisError> {
+    let mut watch = StageWatch { progress, stopped: false };
     let (search, base) = begun(problem, held, None, &mut watch)?;
-    watch.begin(Stage::Fit(1)).ok_or(Trouble::Stopped)?;
+    watch.begin(Stage::Fit(1)).ok_or(DiagnosisError::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
-    let ground = Ground { problem, sensors, before: &base.fit };
+    let ground = ScreeningContext { problem, sensors, before: &base.fit };
     let screen = screened(&ground, &[hypothesis], Deadline::default());
     let rivals = fitted(&ground, screen.order, Deadline::default()).rivals;
     let Some(last) = rivals.first().map(|r| r.model.clone()) else { return Ok(None) };
     let closes = 1.0 - last.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
     let trials = search.chooser.choose(1, &base, rivals, Deadline::default()).trials;
-    let Some(Trial { found: Some(Judged { evidence, t, .. }), reason, .. }) = trials.first() else { return Ok(None) };
-    let taken = vec![Taken { hypothesis, evidence: *evidence, t: *t, closes, set: Vec::new() }];
+    let Some(HypothesisTrial { found: Some(CrossValidationScore { evidence, t, .. }), reason, .. }) = trials.first()
+    else {
+        return Ok(None);
+    };
+    let taken = vec![AcceptedEffect { hypothesis, evidence: *evidence, t: *t, closes, set: Vec::new() }];
     let said = reason
         .as_ref()
         .map_or_else(|| "among no others it would be taken".to_string(), |why| format!("it would be refused: {why}"));
-    Ok(Some(Found { base, last, taken, shape: None, visible: 1.0, asked: Some(said), trials }))
+    Ok(Some(EffectSearchResult { base, last, taken, shape: None, visible: 1.0, asked: Some(said), trials }))
 }
 
 /// The model within its tolerances, and what a search needs.
 fn begun<'a>(
-    problem: &'a Problem<'a>,
-    held: &'a [Recording],
+    problem: &'a DiagnosisProblem<'a>,
+    held: &'a [RecordingData],
     budget: Option<Budget<'a>>,
-    watch: &mut Watch<'_>,
-) -> Result<(Search<'a>, Weighed), Trouble> {
-    watch.begin(Stage::Tolerances).ok_or(Trouble::Stopped)?;
+    watch: &mut StageWatch<'_>,
+) -> Result<(EffectSearch<'a>, CrossValidatedFit), DiagnosisError> {
+    watch.begin(Stage::Tolerances).ok_or(DiagnosisError::Stopped)?;
     let sensors = models::sensors(problem);
-    let nominal = models::nominal(problem).map_err(Trouble::Model)?;
+    let nominal = models::nominal(problem).map_err(DiagnosisError::Model)?;
     let x = nominal.present();
     let ends = Deadline::of(budget, || drop(nominal.evaluate(&x, &problem.train)));
     let until = ends.of_step();
@@ -212,11 +215,11 @@ fn begun<'a>(
     let base = base.ok_or_else(|| stops(problem, &nominal, &x))?;
     let base = settled(problem, &sensors, base, until);
     let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
-    let criteria = Criteria { sensors, first, count: problem.hypotheses.len() };
-    let held = Held::new(held, &nominal, &x, &criteria.sensors);
-    let search = Search {
+    let criteria = SelectionCriteria { sensors, first, count: problem.hypotheses.len() };
+    let held = HoldoutRecordings::new(held, &nominal, &x, &criteria.sensors);
+    let search = EffectSearch {
         problem,
-        chooser: Chooser { problem, held, criteria },
+        chooser: EffectSelector { problem, held, criteria },
         visible: None,
         trials: Vec::new(),
         passed: Vec::new(),
@@ -228,32 +231,37 @@ fn begun<'a>(
 }
 
 /// A hypothesis for which the time did not last.
-fn passed(step: usize, hypothesis: usize) -> Trial {
-    let chosen = Chosen { hypothesis, values: Vec::new() };
-    Trial { step, chosen, found: None, reason: Some(Reason::Behind) }
+fn passed(step: usize, hypothesis: usize) -> HypothesisTrial {
+    let chosen = HypothesisValues { hypothesis, values: Vec::new() };
+    HypothesisTrial { step, chosen, found: None, reason: Some(RejectionReason::Behind) }
 }
 
 /// Where the nominal model stops.
-fn stops(problem: &Problem<'_>, nominal: &Candidate, x: &[f64]) -> Trouble {
-    let stop = |(r, file): (&Recording, &String)| Some(Trouble::Stops(file.clone(), nominal.stops(x, r)?));
+fn stops(problem: &DiagnosisProblem<'_>, nominal: &CandidateModel, x: &[f64]) -> DiagnosisError {
+    let stop = |(r, file): (&RecordingData, &String)| Some(DiagnosisError::Stops(file.clone(), nominal.stops(x, r)?));
     let first = problem.train.iter().zip(&problem.files).find_map(stop);
-    first.unwrap_or_else(|| Trouble::Stops(String::new(), 0.0))
+    first.unwrap_or_else(|| DiagnosisError::Stops(String::new(), 0.0))
 }
 
-impl Search<'_> {
+impl EffectSearch<'_> {
     fn h(&self, index: usize) -> &Hypothesis {
         &self.problem.hypotheses[index]
     }
 
     /// The rival that is taken. If from its parameters the model before comes out so well that the rival shows nothing beside
     /// it, that one was not at its optimum: it moves there, and the rivals are compared with it again.
-    fn choose(&mut self, step: usize, before: &mut Weighed, rivals: Vec<Rival>) -> Option<(Weighed, Taken)> {
+    fn choose(
+        &mut self,
+        step: usize,
+        before: &mut CrossValidatedFit,
+        rivals: Vec<RivalHypothesis>,
+    ) -> Option<(CrossValidatedFit, AcceptedEffect)> {
         let mut choice = self.chooser.choose(step, before, rivals.clone(), self.ends);
         for _ in 0..SETTLING {
             let sensors = &self.chooser.criteria.sensors;
             let Some((rival, _)) = &choice.taken else { break };
             let again = as_in(self.problem, sensors, before, &rival.fit);
-            let shows_nothing = |a: &Weighed| ahead(a, rival, sensors) <= needed(self.chooser.criteria.count);
+            let shows_nothing = |a: &CrossValidatedFit| ahead(a, rival, sensors) <= needed(self.chooser.criteria.count);
             let Some(again) = again.filter(shows_nothing) else { break };
             *before = again;
             choice = self.chooser.choose(step, before, rivals.clone(), self.ends);
@@ -265,7 +273,12 @@ impl Search<'_> {
     }
 
     /// Looks for one more effect.
-    fn step(&mut self, step: usize, before: &mut Weighed, watch: &mut Watch<'_>) -> Option<(Weighed, Taken)> {
+    fn step(
+        &mut self,
+        step: usize,
+        before: &mut CrossValidatedFit,
+        watch: &mut StageWatch<'_>,
+    ) -> Option<(CrossValidatedFit, AcceptedEffect)> {
         let open = self.open(&before.fit);
         self.beside(step, before, &open, watch)
     }
@@ -274,10 +287,10 @@ impl Search<'_> {
     fn beside(
         &mut self,
         step: usize,
-        before: &mut Weighed,
+        before: &mut CrossValidatedFit,
         open: &[usize],
-        watch: &mut Watch<'_>,
-    ) -> Option<(Weighed, Taken)> {
+        watch: &mut StageWatch<'_>,
+    ) -> Option<(CrossValidatedFit, AcceptedEffect)> {
         watch.begin(Stage::Screen(step))?;
         let rivals = self.rivals(step, before, open, Some(watch));
         self.choose(step, before, rivals)
@@ -289,7 +302,7 @@ impl Search<'_> {
 
     /// A shape beside a model to which no effect could be added; or an effect after all, if with a shape it is sure that
     /// something is missing.
-    fn shape(&mut self, step: usize, last: &mut Weighed) -> Option<(Weighed, Taken)> {
+    fn shape(&mut self, step: usize, last: &mut CrossValidatedFit) -> Option<(CrossValidatedFit, AcceptedEffect)> {
         let mut rivals = self.rivals(step, last, &self.shapes(), None);
         self.shape_says_more = !rivals.is_empty();
         if rivals.is_empty() {
@@ -297,7 +310,8 @@ impl Search<'_> {
             return None;
         }
         // they are weighed once: now
-        let again = |t: &Trial| t.step == step && self.undecided.iter().any(|r| r.hypothesis == t.chosen.hypothesis);
+        let again =
+            |t: &HypothesisTrial| t.step == step && self.undecided.iter().any(|r| r.hypothesis == t.chosen.hypothesis);
         self.trials.retain(|t| !again(t));
         rivals.append(&mut self.undecided);
         self.choose(step, last, rivals)
@@ -305,25 +319,30 @@ impl Search<'_> {
 
     /// A shape in the place of the only effect, where one may say something beside it, if it surely leaves less: then the
     /// effect is named for want of a better one.
-    fn shape_instead(&mut self, base: &Weighed, last: &Weighed, watch: &mut Watch<'_>) -> Option<Taken> {
+    fn shape_instead(
+        &mut self,
+        base: &CrossValidatedFit,
+        last: &CrossValidatedFit,
+        watch: &mut StageWatch<'_>,
+    ) -> Option<AcceptedEffect> {
         if !self.shape_says_more {
             return None;
         }
         self.undecided.clear();
         let (model, shape) = self.beside(2, &mut base.clone(), &self.shapes(), watch)?;
-        let Criteria { sensors, .. } = &self.chooser.criteria;
+        let SelectionCriteria { sensors, .. } = &self.chooser.criteria;
         let leaves_less = model.gap(sensors) < last.gap(sensors) && self.chooser.criteria.worse(&model, last).is_some();
         leaves_less.then_some(shape)
     }
 
     /// Hypotheses with a name that may be tried beside what was taken.
-    fn open(&self, before: &Fit) -> Vec<usize> {
+    fn open(&self, before: &ModelFit) -> Vec<usize> {
         let taken: Vec<usize> = before.candidate.causes.iter().map(|c| c.hypothesis).collect();
         let one_law = |i: usize, t: usize| {
             let (a, b) = (self.h(i), self.h(t));
             a.law() == b.law() && a.attachments[0].site.is_at(&b.attachments[0].site)
         };
-        let known = |i: usize, t: &Tolerance| t.name == self.h(i).attachments[0].place.place && !t.free;
+        let known = |i: usize, t: &ToleranceParameter| t.name == self.h(i).attachments[0].place.place && !t.free;
         let may_be_off =
             |i: usize| self.h(i).family != "parameter" || self.problem.tolerances.iter().any(|t| known(i, t));
         let open = |&i: &usize| {
@@ -334,7 +353,13 @@ impl Search<'_> {
     }
 
     /// The rivals of a step, each fitted.
-    fn rivals(&mut self, step: usize, before: &Weighed, open: &[usize], watch: Option<&mut Watch<'_>>) -> Vec<Rival> {
+    fn rivals(
+        &mut self,
+        step: usize,
+        before: &CrossValidatedFit,
+        open: &[usize],
+        watch: Option<&mut StageWatch<'_>>,
+    ) -> Vec<RivalHypothesis> {
         if self.visible.is_some() && self.chooser.criteria.nothing_is_worth_it(before) {
             return Vec::new();
         }
@@ -344,7 +369,7 @@ impl Search<'_> {
             return Vec::new();
         }
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
-        let ground = Ground { problem, sensors, before: &before.fit };
+        let ground = ScreeningContext { problem, sensors, before: &before.fit };
         let until = self.ends.of_step();
         let screen = screened(&ground, open, until.of_step());
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
@@ -358,20 +383,20 @@ impl Search<'_> {
     }
 
     /// The model of a step that is taken: with its widths free, at its optimum.
-    fn freed(&self, chosen: Weighed) -> Weighed {
+    fn freed(&self, chosen: CrossValidatedFit) -> CrossValidatedFit {
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
         let wider = widened(problem, sensors, &chosen, self.ends);
         settled(problem, sensors, wider.unwrap_or(chosen), self.ends)
     }
 
     /// A model fitted from where it is.
-    fn weighed(&self, model: Candidate) -> Option<Weighed> {
+    fn weighed(&self, model: CandidateModel) -> Option<CrossValidatedFit> {
         let x = model.present();
         weighed(self.problem, &self.chooser.criteria.sensors, (model, x), self.ends)
     }
 
     /// Drops what was taken before and is not missed any more.
-    fn drop_needless(&self, last: &mut Weighed, taken: &mut Vec<Taken>) {
+    fn drop_needless(&self, last: &mut CrossValidatedFit, taken: &mut Vec<AcceptedEffect>) {
         let mut i = 0;
         while i + 1 < taken.len() {
             let mut causes = last.fit.causes();
@@ -388,7 +413,7 @@ impl Search<'_> {
         }
     }
 
-    fn is_recording_error(&self, taken: &[Taken]) -> bool {
+    fn is_recording_error(&self, taken: &[AcceptedEffect]) -> bool {
         taken.iter().any(|t| self.h(t.hypothesis).is_recording_error())
     }
 }

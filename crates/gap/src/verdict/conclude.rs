@@ -2,20 +2,21 @@
 
 use super::super::circuit::same_kind;
 use super::super::clock::Deadline;
-use super::super::data::Recording;
-use super::super::estimate::Candidate;
-use super::super::estimate::candidate::Errors;
-use super::super::figures::{self, Left};
-use super::super::hypotheses::{Hypothesis, Signal, Site};
+use super::super::data::RecordingData;
+use super::super::estimate::CandidateModel;
+use super::super::estimate::candidate::RecordingResiduals;
+use super::super::figures::{self, GapFigures};
+use super::super::hypotheses::{AttachmentSite, Hypothesis, SensorSignal};
 use super::super::mistakes;
 use super::super::policy::VISIBLE;
-use super::super::problem::{Chosen, Problem, Shown, Tolerance, through};
-use super::super::select::choose::{Taken, Trial};
+use super::super::problem::{DiagnosisProblem, HypothesisValues, SignalDisplayUnit, ToleranceParameter, through};
+use super::super::select::choose::{AcceptedEffect, HypothesisTrial};
 use super::super::select::models;
-use super::super::select::search::Found;
-use super::super::select::weighed::{Weighed, at_nominal, weighed};
+use super::super::select::search::EffectSearchResult;
+use super::super::select::weighed::{CrossValidatedFit, at_nominal, weighed};
 use super::{
-    Drift, EXCITING, Effect, Estimate, Flow, Gaps, Located, Maybe, PARTING, RecordingError, Term, Unexplained, Verdict,
+    EXCITING, EffectFlow, GapSummary, MissingTerm, OptionalNumber, PARTING, ParameterDrift, ParameterEstimate,
+    PlaceEvidence, RecordingError, UnexplainedGap, Verdict, VerdictEffect,
 };
 use super::{alternative, ratio, spots};
 use rayon::prelude::*;
@@ -25,9 +26,14 @@ use std::collections::{BTreeMap, BTreeSet};
 const LITRES_A_MINUTE: f64 = 60_000.0;
 
 /// The verdict; without held recordings the train ones stand in.
-pub fn conclude(problem: &Problem<'_>, found: &Found, held: &[Recording], seconds: f64) -> Verdict {
+pub fn conclude(
+    problem: &DiagnosisProblem<'_>,
+    found: &EffectSearchResult,
+    held: &[RecordingData],
+    seconds: f64,
+) -> Verdict {
     let last = &found.last.fit;
-    let conclusion = Conclusion {
+    let conclusion = VerdictBuilder {
         problem,
         found,
         held: if held.is_empty() { &problem.train } else { held },
@@ -37,17 +43,17 @@ pub fn conclude(problem: &Problem<'_>, found: &Found, held: &[Recording], second
     conclusion.verdict(seconds)
 }
 
-struct Conclusion<'a> {
-    problem: &'a Problem<'a>,
-    found: &'a Found,
-    held: &'a [Recording],
+struct VerdictBuilder<'a> {
+    problem: &'a DiagnosisProblem<'a>,
+    found: &'a EffectSearchResult,
+    held: &'a [RecordingData],
     /// There are no held recordings: these are the train ones.
     own: bool,
     /// Standard deviation of each coordinate of the model that is named.
     deviations: Vec<f64>,
 }
 
-impl Conclusion<'_> {
+impl VerdictBuilder<'_> {
     fn verdict(&self, seconds: f64) -> Verdict {
         let (problem, found) = (self.problem, self.found);
         let base = &found.base.fit;
@@ -55,12 +61,12 @@ impl Conclusion<'_> {
         let last = &found.last.fit;
         let models = [(&base.candidate, &nominal), (&base.candidate, &base.x), (&last.candidate, &last.x)];
         let on_held = models.map(|(c, x)| self.left(c, x));
-        let on_train = models.map(|(c, x)| Left::of(&errors(c, x, &problem.train, true)));
+        let on_train = models.map(|(c, x)| GapFigures::of(&errors(c, x, &problem.train, true)));
         let [first, tolerated, effects] = on_held.each_ref().map(|l| l.total(&problem.full_scale));
         let share = ratio(effects, first);
         let open = figures::open(problem, &on_held[2], self.held);
         let recording = self.recording();
-        let named: Vec<Effect> = self.effects([&on_held[1], &on_held[2]]);
+        let named: Vec<VerdictEffect> = self.effects([&on_held[1], &on_held[2]]);
         let verdict = match () {
             () if !recording.is_empty() => "recording_error",
             () if !named.is_empty() => "effects",
@@ -80,7 +86,7 @@ impl Conclusion<'_> {
             effects: named,
             asked: found.asked.clone(),
             drifts: self.drifts(),
-            gap: Gaps {
+            gap: GapSummary {
                 held: figures::side(problem, on_held.each_ref(), self.held),
                 train: figures::side(problem, on_train.each_ref(), &problem.train),
             },
@@ -98,26 +104,26 @@ impl Conclusion<'_> {
         }
     }
 
-    fn left(&self, candidate: &Candidate, x: &[f64]) -> Left {
-        Left::of(&errors(candidate, x, self.held, self.own))
+    fn left(&self, candidate: &CandidateModel, x: &[f64]) -> GapFigures {
+        GapFigures::of(&errors(candidate, x, self.held, self.own))
     }
 
-    fn of(&self, chosen: &Chosen) -> &Hypothesis {
+    fn of(&self, chosen: &HypothesisValues) -> &Hypothesis {
         &self.problem.hypotheses[chosen.hypothesis]
     }
 
-    fn hypothesis(&self, taken: &Taken) -> &Hypothesis {
+    fn hypothesis(&self, taken: &AcceptedEffect) -> &Hypothesis {
         &self.problem.hypotheses[taken.hypothesis]
     }
 
     /// What is left, and the shape that it has where it has one.
-    fn unexplained(&self, share: Maybe) -> Unexplained {
+    fn unexplained(&self, share: OptionalNumber) -> UnexplainedGap {
         let shape = self.found.shape.as_ref().map(|s| (s, self.hypothesis(s)));
-        let term = |(taken, h): (&Taken, &Hypothesis)| {
+        let term = |(taken, h): (&AcceptedEffect, &Hypothesis)| {
             let effect = h.attachments[0].effect.as_ref();
-            Term { term: effect.map_or_else(String::new, |e| e.description.clone()), closes: taken.closes }
+            MissingTerm { term: effect.map_or_else(String::new, |e| e.description.clone()), closes: taken.closes }
         };
-        Unexplained {
+        UnexplainedGap {
             share,
             place: shape.map(|(_, h)| h.attachments[0].place.place.clone()),
             shape: shape.map(|s| vec![term(s)]),
@@ -127,7 +133,7 @@ impl Conclusion<'_> {
     /// The mistakes of the recordings, one of a column is in every file; with those that the data cannot tell from it.
     fn recording(&self) -> Vec<RecordingError> {
         let named = self.found.taken.iter().filter(|t| self.hypothesis(t).is_recording_error());
-        let with = |t: &Taken| {
+        let with = |t: &AcceptedEffect| {
             let others = t.set.iter().map(|(c, _)| self.of(c)).filter(|h| h.is_recording_error());
             std::iter::once(self.hypothesis(t)).chain(others).collect::<Vec<_>>()
         };
@@ -141,19 +147,19 @@ impl Conclusion<'_> {
     }
 
     /// Effects, with what each closes of the gap within tolerances.
-    fn effects(&self, [tolerated, last]: [&Left; 2]) -> Vec<Effect> {
-        let total = |l: &Left| l.total(&self.problem.full_scale);
+    fn effects(&self, [tolerated, last]: [&GapFigures; 2]) -> Vec<VerdictEffect> {
+        let total = |l: &GapFigures| l.total(&self.problem.full_scale);
         let (tolerated, full) = (total(tolerated), total(last));
         let taken = &self.found.taken;
         let flows = self.flows();
         let gaps = self.gaps_with(tolerated, full);
-        let effect = |(i, t): (usize, &Taken)| {
+        let effect = |(i, t): (usize, &AcceptedEffect)| {
             let h = self.hypothesis(t);
             if h.is_recording_error() {
                 return None;
             }
             let (alone, without) = (gaps[&vec![i]], gaps[&without(i, taken.len())]);
-            Some(Effect {
+            Some(VerdictEffect {
                 effect: h.effect.clone(),
                 family: h.family.clone(),
                 description: h.attachments[0].effect.as_ref().map_or_else(String::new, |e| e.description.clone()),
@@ -171,7 +177,7 @@ impl Conclusion<'_> {
     }
 
     /// The held gaps of the models with each effect alone, and with all others; nothing and everything are known.
-    fn gaps_with(&self, tolerated: Maybe, full: Maybe) -> BTreeMap<Vec<usize>, Maybe> {
+    fn gaps_with(&self, tolerated: OptionalNumber, full: OptionalNumber) -> BTreeMap<Vec<usize>, OptionalNumber> {
         let taken = &self.found.taken;
         let effects = (0..taken.len()).filter(|&i| !self.hypothesis(&taken[i]).is_recording_error());
         let kept: BTreeSet<Vec<usize>> = effects.flat_map(|i| [vec![i], without(i, taken.len())]).collect();
@@ -187,11 +193,11 @@ impl Conclusion<'_> {
     }
 
     /// What flows through each effect that is no signal and no parameter, by its number.
-    fn flows(&self) -> BTreeMap<usize, Flow> {
+    fn flows(&self) -> BTreeMap<usize, EffectFlow> {
         let fit = &self.found.last.fit;
         let causes = fit.causes();
-        let through = |(i, c): (usize, &Chosen)| Some((i, through(i, self.of(c))?));
-        let (numbers, signals): (Vec<usize>, Vec<Signal>) = causes.iter().enumerate().filter_map(through).unzip();
+        let through = |(i, c): (usize, &HypothesisValues)| Some((i, through(i, self.of(c))?));
+        let (numbers, signals): (Vec<usize>, Vec<SensorSignal>) = causes.iter().enumerate().filter_map(through).unzip();
         if numbers.is_empty() {
             return BTreeMap::new();
         }
@@ -202,37 +208,40 @@ impl Conclusion<'_> {
             let largest = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             let rms = (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
             let known = largest.is_finite() && largest > 0.0;
-            known.then(|| (i, Flow { largest: shown.value(largest), rms: shown.value(rms), unit: shown.unit.clone() }))
+            known.then(|| {
+                (i, EffectFlow { largest: shown.value(largest), rms: shown.value(rms), unit: shown.unit.clone() })
+            })
         };
         numbers.into_iter().zip(found).filter_map(flow).collect()
     }
 
     /// The unit in which the study speaks of a quantity: that of one of its columns, else what engineers use.
-    fn spoken(&self, unit: &str) -> Shown {
+    fn spoken(&self, unit: &str) -> SignalDisplayUnit {
         let own = self.problem.signals.iter().zip(&self.problem.shown);
         let alike = own.filter(|(s, _)| same_kind(&self.problem.unit(s), unit)).map(|(_, shown)| shown.clone());
-        let usual = same_kind(unit, "m3/s").then(|| Shown { unit: "l/min".into(), factor: LITRES_A_MINUTE });
-        alike.chain(usual).next().unwrap_or(Shown { unit: unit.into(), factor: 1.0 })
+        let usual =
+            same_kind(unit, "m3/s").then(|| SignalDisplayUnit { unit: "l/min".into(), factor: LITRES_A_MINUTE });
+        alike.chain(usual).next().unwrap_or(SignalDisplayUnit { unit: unit.into(), factor: 1.0 })
     }
 
     /// The held gap of the model with some of the effects, fitted anew.
-    fn gap_with(&self, kept: &[usize]) -> Maybe {
+    fn gap_with(&self, kept: &[usize]) -> OptionalNumber {
         let all = self.found.last.fit.causes();
-        let causes: Vec<Chosen> = kept.iter().map(|&i| all[i].clone()).collect();
+        let causes: Vec<HypothesisValues> = kept.iter().map(|&i| all[i].clone()).collect();
         let candidate =
             models::candidate(self.problem, &causes, Some(&self.found.base.fit.tolerances()), causes.len())?;
         let x = candidate.present();
-        let Weighed { fit, .. } =
+        let CrossValidatedFit { fit, .. } =
             weighed(self.problem, &models::sensors(self.problem), (candidate, x), Deadline::default())?;
         self.left(&fit.candidate, &fit.x).total(&self.problem.full_scale)
     }
 
-    fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, Estimate> {
+    fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, ParameterEstimate> {
         let fit = &self.found.last.fit;
         let theta = fit.candidate.theta(&fit.x);
         // what counts in the unit of a signal is shown in that of its column
         let sensor = match &h.attachments[0].site {
-            Site::Sensor(name) => self.problem.signals.iter().position(|s| s.name == *name),
+            AttachmentSite::Sensor(name) => self.problem.signals.iter().position(|s| s.name == *name),
             _ => None,
         };
         let column = sensor.map(|k| (self.problem.unit(&self.problem.signals[k]), self.problem.shown[k].clone()));
@@ -242,18 +251,18 @@ impl Conclusion<'_> {
         };
         let coefficients = h.coefficients.iter().map(|c| (&c.name, of_signal(c.relative, &c.unit)));
         let names = coefficients.chain(h.shapes.iter().map(|s| (&s.name, of_signal(s.relative, &s.unit))));
-        let estimate = |(&place, (name, (unit, shown))): (&usize, (&String, (String, Option<Shown>)))| {
+        let estimate = |(&place, (name, (unit, shown))): (&usize, (&String, (String, Option<SignalDisplayUnit>)))| {
             let free = fit.candidate.coordinates.iter().position(|c| c.parameter == place);
             let std = free.map_or(0.0, |k| self.deviations[k] * fit.candidate.coordinates[k].slope(fit.x[k]));
-            (name.clone(), Estimate { value: theta[place], std, unit, shown })
+            (name.clone(), ParameterEstimate { value: theta[place], std, unit, shown })
         };
         fit.candidate.model.attached[i].iter().zip(names).map(estimate).collect()
     }
 
-    fn drifts(&self) -> Vec<Drift> {
+    fn drifts(&self) -> Vec<ParameterDrift> {
         let fit = &self.found.last.fit;
         let theta = fit.candidate.theta(&fit.x);
-        let drift = |(i, t): (usize, &Tolerance)| Drift {
+        let drift = |(i, t): (usize, &ToleranceParameter)| ParameterDrift {
             parameter: t.name.clone(),
             nominal: t.nominal,
             value: theta[i],
@@ -263,9 +272,9 @@ impl Conclusion<'_> {
         self.problem.tolerances.iter().enumerate().map(drift).collect()
     }
 
-    fn weighed(&self, trial: &Trial) -> super::Weighed {
+    fn weighed(&self, trial: &HypothesisTrial) -> super::HypothesisAssessment {
         let h = self.of(&trial.chosen);
-        super::Weighed {
+        super::HypothesisAssessment {
             step: trial.step,
             effect: h.effect.clone(),
             family: h.family.clone(),
@@ -278,13 +287,13 @@ impl Conclusion<'_> {
     }
 
     /// Places of what was taken first, then those of the best explanations of the first step.
-    fn places(&self) -> Vec<Located> {
-        let mut all: Vec<Located> = Vec::new();
+    fn places(&self) -> Vec<PlaceEvidence> {
+        let mut all: Vec<PlaceEvidence> = Vec::new();
         let mut add = |h: &Hypothesis, evidence: f64| {
             let place = &h.attachments[0].place;
             if evidence > 0.0 && !all.iter().any(|l| l.place == place.place) {
                 let (place, node, kind) = (place.place.clone(), place.node.clone(), place.kind.word());
-                all.push(Located { place, node, kind, evidence, share: 0.0 });
+                all.push(PlaceEvidence { place, node, kind, evidence, share: 0.0 });
             }
         };
         let named = self.found.taken.iter().chain(&self.found.shape);
@@ -298,7 +307,12 @@ impl Conclusion<'_> {
     }
 }
 
-fn errors(candidate: &Candidate, x: &[f64], recordings: &[Recording], own: bool) -> Vec<Option<Errors>> {
+fn errors(
+    candidate: &CandidateModel,
+    x: &[f64],
+    recordings: &[RecordingData],
+    own: bool,
+) -> Vec<Option<RecordingResiduals>> {
     recordings.par_iter().enumerate().map(|(i, r)| candidate.errors(x, r, own.then_some(i))).collect()
 }
 

@@ -70,7 +70,9 @@ pub(super) fn other_versions(library: &mut Library<'_>) -> Vec<Diagnostic> {
     for id in library.own.clone() {
         let class = library.class(id);
         for used in class.annotation.iter().flat_map(|a| inner(&a.arguments, "uses")) {
-            let ast::ArgumentKind::Modify { path, modification: Some(m), .. } = &used.kind else { continue };
+            let ast::ModificationArgumentKind::Modify { path, modification: Some(m), .. } = &used.kind else {
+                continue;
+            };
             let Some(wanted) = texts(m.arguments.iter(), "version").next() else { continue };
             let name = path.parts[0].name;
             let Some(annotation) = library.loaded(name).and_then(|c| library.class(c).annotation.as_ref()) else {
@@ -90,11 +92,14 @@ pub(super) fn other_versions(library: &mut Library<'_>) -> Vec<Diagnostic> {
 }
 
 /// The arguments inside `name(...)` of an annotation.
-fn inner<'a>(arguments: &'a [ast::Argument], name: &'static str) -> impl Iterator<Item = &'a ast::Argument> {
+fn inner<'a>(
+    arguments: &'a [ast::ModificationArgument],
+    name: &'static str,
+) -> impl Iterator<Item = &'a ast::ModificationArgument> {
     arguments
         .iter()
         .filter_map(move |a| match &a.kind {
-            ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
+            ast::ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
                 Some(&m.arguments)
             }
             _ => None,
@@ -103,9 +108,12 @@ fn inner<'a>(arguments: &'a [ast::Argument], name: &'static str) -> impl Iterato
 }
 
 /// The texts of `name = "..."` in an annotation.
-fn texts<'a>(arguments: impl Iterator<Item = &'a ast::Argument>, name: &'static str) -> impl Iterator<Item = &'a str> {
+fn texts<'a>(
+    arguments: impl Iterator<Item = &'a ast::ModificationArgument>,
+    name: &'static str,
+) -> impl Iterator<Item = &'a str> {
     arguments.filter_map(move |a| match &a.kind {
-        ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
+        ast::ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
             match &m.value.as_ref()?.kind {
                 ast::ExprKind::String(text) => Some(&**text),
                 _ => None,

@@ -8,13 +8,13 @@ pub use messages::sort_messages;
 
 use crate::flat::{self, FlatModel};
 use crate::instance::{self, Instance, ModelRequest, Override};
-use crate::network::{self, Graph, Network};
-use crate::resolve::{ClassId, Library, Trees, nested_classes};
-use crate::shipped::Shipped;
+use crate::network::{self, ComponentGraph, Network};
+use crate::resolve::{ClassId, Library, SyntaxArena, nested_classes};
+use crate::shipped::ShippedWorld;
 use crate::structure::{self, Dae, StateChoice};
 use crate::unit_check;
 use bramah_syntax::ast::{self, ClassBody, ClassKind};
-use bramah_syntax::diag::{Checked, Code, Diagnostic, Sources};
+use bramah_syntax::diag::{Code, Diagnostic, Sources, StageResult};
 use bramah_syntax::world::World;
 use std::path::{Path, PathBuf};
 
@@ -42,7 +42,7 @@ pub struct Request {
 
 /// What became of a [`Request`]: texts for messages, messages, and the value if there were no errors.
 #[derive(Debug)]
-pub struct Outcome<T> {
+pub struct CompileOutcome<T> {
     /// All texts read.
     pub sources: Sources,
     /// Errors, warnings and notes.
@@ -53,27 +53,27 @@ pub struct Outcome<T> {
 
 /// A model after the front half of the pipeline.
 #[derive(Clone, Debug)]
-pub struct Flattened {
+pub struct FrontEndResult {
     /// Scalar variables and equations.
     pub flat: FlatModel,
     /// Components and connections of the top level.
-    pub graph: Graph,
+    pub graph: ComponentGraph,
 }
 
 /// The pipeline up to the sorted equations.
-pub fn sort(world: &dyn World, request: &Request) -> Outcome<(FlatModel, Graph, Dae)> {
-    let Outcome { sources, mut diagnostics, value } = flatten(world, request);
+pub fn sort(world: &dyn World, request: &Request) -> CompileOutcome<(FlatModel, ComponentGraph, Dae)> {
+    let CompileOutcome { sources, mut diagnostics, value } = flatten(world, request);
     let value = value.and_then(|f| {
         diagnostics.extend(unit_check::check(&f.flat));
         messages::of_libraries(&mut diagnostics, &sources, request);
         let dae = analyze(&f.flat).sink(&mut diagnostics);
         Some((f.flat, f.graph, dae?))
     });
-    Outcome { sources, diagnostics, value }
+    CompileOutcome { sources, diagnostics, value }
 }
 
 /// Sorts the equations of a flat model; where they do not determine the unknowns, says why.
-pub fn analyze(flat: &FlatModel) -> Checked<Dae> {
+pub fn analyze(flat: &FlatModel) -> StageResult<Dae> {
     let mut checked = structure::analyze(flat, &StateChoice::default());
     if checked.diagnostics.iter().any(is_structural) {
         checked.diagnostics = explained(flat, checked.diagnostics);
@@ -93,8 +93,8 @@ fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
 }
 
 /// The pipeline up to the flat model.
-pub fn flatten(world: &dyn World, request: &Request) -> Outcome<Flattened> {
-    inspect(world, request, |instance, network, flat| Flattened { flat, graph: network.graph(instance) })
+pub fn flatten(world: &dyn World, request: &Request) -> CompileOutcome<FrontEndResult> {
+    inspect(world, request, |instance, network, flat| FrontEndResult { flat, graph: network.graph(instance) })
 }
 
 /// The pipeline up to the flat model, with a look at the component tree and the connections it was made from.
@@ -102,7 +102,7 @@ pub fn inspect<T>(
     world: &dyn World,
     request: &Request,
     look: impl FnOnce(&mut Instance<'_, '_>, &Network, FlatModel) -> T,
-) -> Outcome<T> {
+) -> CompileOutcome<T> {
     with_class(world, request, |library, class, diagnostics| {
         with_network(library, class, request, diagnostics, |instance, network, diagnostics| {
             let flat = flat::flatten(instance, network).sink(diagnostics)?;
@@ -112,7 +112,7 @@ pub fn inspect<T>(
 }
 
 /// The full name of a model with its components and connections, also where ports are open or equations do not fit together.
-pub fn graph(world: &dyn World, request: &Request) -> Outcome<(String, Graph)> {
+pub fn graph(world: &dyn World, request: &Request) -> CompileOutcome<(String, ComponentGraph)> {
     with_class(world, request, |library, class, diagnostics| {
         let name = library.full_name(class);
         with_network(library, class, request, diagnostics, |instance, network, _| Some((name, network.graph(instance))))
@@ -124,9 +124,9 @@ fn with_class<T>(
     world: &dyn World,
     request: &Request,
     act: impl FnOnce(&mut Library<'_>, ClassId, &mut Vec<Diagnostic>) -> Option<T>,
-) -> Outcome<T> {
-    let trees = Trees::new();
-    let shipped = Shipped;
+) -> CompileOutcome<T> {
+    let trees = SyntaxArena::new();
+    let shipped = ShippedWorld;
     let mut library = Library::new(&trees, roots(world, &shipped, request));
     library.set_data_folder(world, request.data_folder(world));
     library.set_externals(request.externals.clone());
@@ -148,13 +148,13 @@ fn with_class<T>(
     messages::of_libraries(&mut all, &library.sources, request);
     let all: Vec<Diagnostic> = all.into_iter().map(|d| if d.is_error() { d.advised() } else { d }).collect();
     let failed = all.iter().any(Diagnostic::is_error);
-    Outcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
+    CompileOutcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
 }
 
 /// Folders with packages, in order: the request's, then what ships with bramah.
-fn roots<'a>(world: &'a dyn World, shipped: &'a Shipped, request: &Request) -> Vec<(&'a dyn World, PathBuf)> {
+fn roots<'a>(world: &'a dyn World, shipped: &'a ShippedWorld, request: &Request) -> Vec<(&'a dyn World, PathBuf)> {
     let own = request.libraries.iter().map(|l| (world, l.clone()));
-    own.chain(Shipped::roots().map(|r| (shipped as &dyn World, r))).collect()
+    own.chain(ShippedWorld::roots().map(|r| (shipped as &dyn World, r))).collect()
 }
 
 impl Request {
@@ -226,9 +226,9 @@ fn note_shadowed(library: &mut Library<'_>) {
     for id in library.own.clone() {
         let ident = library.class(id).name;
         let (name, file) = (ident.name.as_str(), format!("{}.mo", ident.name));
-        let hidden = Shipped::roots()
+        let hidden = ShippedWorld::roots()
             .iter()
-            .any(|r| Shipped.list(r).is_some_and(|entries| entries.iter().any(|(e, _)| *e == name || *e == file)));
+            .any(|r| ShippedWorld.list(r).is_some_and(|entries| entries.iter().any(|(e, _)| *e == name || *e == file)));
         if hidden {
             library.diagnostics.push(
                 Diagnostic::new(Code::Shadowed, format!("your `{name}` hides the one that ships with bramah"))
@@ -269,7 +269,7 @@ fn listed(intro: &str, names: &[String]) -> String {
 
 /// A model that can run.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Runnable {
+pub struct RunnableModel {
     /// Its full name.
     pub class: String,
     /// Its description, or empty.
@@ -283,9 +283,9 @@ pub struct Runnable {
 ///
 /// # Errors
 /// The source cannot be read, or there is no such class.
-pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<Runnable>, Vec<Diagnostic>> {
-    let trees = Trees::new();
-    let shipped = Shipped;
+pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<RunnableModel>, Vec<Diagnostic>> {
+    let trees = SyntaxArena::new();
+    let shipped = ShippedWorld;
     let mut library = Library::new(&trees, roots(world, &shipped, request));
     let given = match &request.model {
         Some(_) => find_model(world, &mut library, request).map(|id| vec![id]),
@@ -296,7 +296,7 @@ pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<Runnable>, V
     given.iter().for_each(|&id| collect_runnable(&mut library, id, &mut all));
     let with_experiment: Vec<ClassId> = all.iter().copied().filter(|&id| has_experiment(library.class(id))).collect();
     let chosen = if with_experiment.is_empty() { all } else { with_experiment };
-    let described = |id| Runnable {
+    let described = |id| RunnableModel {
         class: library.full_name(id),
         description: library.class(id).description.as_deref().unwrap_or("").to_owned(),
         experiment: has_experiment(library.class(id)),
@@ -354,13 +354,13 @@ fn has_experiment(class: &ast::Class) -> bool {
         return false;
     }
     let arguments = class.annotation.iter().flat_map(|a| &a.arguments);
-    arguments
-        .into_iter()
-        .any(|a| matches!(&a.kind, ast::ArgumentKind::Modify { path, .. } if path.parts[0].name == "experiment"))
+    arguments.into_iter().any(
+        |a| matches!(&a.kind, ast::ModificationArgumentKind::Modify { path, .. } if path.parts[0].name == "experiment"),
+    )
 }
 
 /// Compiles one text held in memory; for tests and examples.
-pub fn flatten_text(text: &str, model: Option<&str>) -> Outcome<Flattened> {
+pub fn flatten_text(text: &str, model: Option<&str>) -> CompileOutcome<FrontEndResult> {
     let world = bramah_syntax::world::MemoryWorld::single("model.mo", text);
     let request = Request { source: Path::new("model.mo").into(), model: model.map(Into::into), ..Request::default() };
     flatten(&world, &request)

@@ -1,8 +1,8 @@
 //! The balance of every component by itself: as many equations as it owes. Ports are checked before.
 
-use super::census::{Census, Role};
-use super::ports::Signals;
-use super::{Equation, FlatModel, OriginKind};
+use super::census::{BalanceCensus, BalanceRole};
+use super::ports::SignalConnections;
+use super::{FlatEquation, FlatModel, OriginKind};
 use crate::instance::{Instance, ScopeId};
 use bramah_expr::VarId;
 use bramah_syntax::diag::{Code, Diagnostic};
@@ -14,9 +14,9 @@ const MOST_PLACES: usize = 6;
 /// What seems wrong, at the first level that shows anything: signals, then each component, then the whole.
 pub(super) fn doubts(
     instance: &Instance<'_, '_>,
-    signals: &Signals<'_>,
+    signals: &SignalConnections<'_>,
     flat: &FlatModel,
-    census: &Census,
+    census: &BalanceCensus,
     scopes: &[ScopeId],
 ) -> Vec<Diagnostic> {
     let found = signals.doubts();
@@ -31,20 +31,20 @@ pub(super) fn doubts(
             continue;
         }
         if blamed.insert(&flat.instances[at].class) {
-            found.push(Judge { instance, flat, census, scopes, at: i }.verdict());
+            found.push(BalanceChecker { instance, flat, census, scopes, at: i }.verdict());
         }
     }
     if found.is_empty() { whole(flat, census).into_iter().collect() } else { found }
 }
 
 /// The count of the whole model, where components could not be judged alone.
-fn whole(flat: &FlatModel, census: &Census) -> Option<Diagnostic> {
+fn whole(flat: &FlatModel, census: &BalanceCensus) -> Option<Diagnostic> {
     if !census.unjudged.contains(&true) {
         return None;
     }
     let given: usize = flat.variables.iter().filter(|v| v.input).count();
-    let unknowns = census.role.iter().filter(|r| **r != Role::Fixed).count() - given;
-    let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(super::When::assigned).collect();
+    let unknowns = census.role.iter().filter(|r| **r != BalanceRole::Fixed).count() - given;
+    let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(super::WhenClause::assigned).collect();
     let equations = flat.equations.len() + assigned.len();
     if equations == unknowns {
         return None;
@@ -60,15 +60,15 @@ fn whole(flat: &FlatModel, census: &Census) -> Option<Diagnostic> {
 }
 
 /// What is wrong with one component.
-struct Judge<'j, 'a, 'l> {
+struct BalanceChecker<'j, 'a, 'l> {
     instance: &'j Instance<'a, 'l>,
     flat: &'j FlatModel,
-    census: &'j Census,
+    census: &'j BalanceCensus,
     scopes: &'j [ScopeId],
     at: u32,
 }
 
-impl Judge<'_, '_, '_> {
+impl BalanceChecker<'_, '_, '_> {
     fn verdict(&self) -> Diagnostic {
         let (owed, brought) = (self.census.owed[self.at as usize], self.census.brought[self.at as usize]);
         let info = &self.flat.instances[self.at as usize];
@@ -88,11 +88,11 @@ impl Judge<'_, '_, '_> {
 
     /// What the number of equations needed consists of.
     fn needed(&self, made: Diagnostic) -> Diagnostic {
-        let of = |role: Role| -> Vec<String> {
+        let of = |role: BalanceRole| -> Vec<String> {
             let all = (0..self.census.role.len()).filter(|&i| self.census.role[i] == role);
             all.filter(|&i| self.census.holder[i] == self.at).map(|i| self.local(i)).collect()
         };
-        let (own, flows) = (of(Role::Own), of(Role::Flow));
+        let (own, flows) = (of(BalanceRole::Own), of(BalanceRole::Flow));
         let mut parts = Vec::new();
         if !flows.is_empty() {
             parts.push(format!("one for each port ({}: {})", flows.len(), listed(&flows)));
@@ -111,7 +111,8 @@ impl Judge<'_, '_, '_> {
         let mentioned = self.mentioned();
         let mut shown = 0;
         for (i, v) in self.flat.variables.iter().enumerate() {
-            let counts = matches!(self.census.role[i], Role::Own | Role::Flow) && self.census.holder[i] == self.at;
+            let counts =
+                matches!(self.census.role[i], BalanceRole::Own | BalanceRole::Flow) && self.census.holder[i] == self.at;
             let id = VarId(u32::try_from(i).expect("limited sizes"));
             if counts && !mentioned.contains(&id) && shown < MOST_PLACES {
                 let holder = &self.flat.instances[v.origin.instance as usize];
@@ -121,7 +122,7 @@ impl Judge<'_, '_, '_> {
             }
         }
         let flows = (0..self.census.role.len())
-            .filter(|&i| self.census.holder[i] == self.at && self.census.role[i] == Role::Flow)
+            .filter(|&i| self.census.holder[i] == self.at && self.census.role[i] == BalanceRole::Flow)
             .map(|i| self.local(i))
             .collect::<Vec<_>>();
         match flows.as_slice() {
@@ -133,10 +134,10 @@ impl Judge<'_, '_, '_> {
     }
 
     fn too_many(&self, mut made: Diagnostic, brought: usize) -> Diagnostic {
-        let own: Vec<&Equation> = self.equations().collect();
-        let idle = |e: &&&Equation| {
+        let own: Vec<&FlatEquation> = self.equations().collect();
+        let idle = |e: &&&FlatEquation| {
             let found = self.flat.exprs.dependencies(&[e.lhs, e.rhs]);
-            found.ders.is_empty() && found.vars.iter().all(|v| self.census.role[v.index()] == Role::Fixed)
+            found.ders.is_empty() && found.vars.iter().all(|v| self.census.role[v.index()] == BalanceRole::Fixed)
         };
         if let Some(e) = own.iter().find(idle) {
             return made
@@ -155,7 +156,7 @@ impl Judge<'_, '_, '_> {
     }
 
     /// The equations written in the component.
-    fn equations(&self) -> impl Iterator<Item = &Equation> {
+    fn equations(&self) -> impl Iterator<Item = &FlatEquation> {
         let made = [OriginKind::ConnectPotential, OriginKind::ConnectFlow, OriginKind::OpenPort];
         self.flat
             .equations
@@ -170,7 +171,7 @@ impl Judge<'_, '_, '_> {
             self.flat.equations.iter().filter(|e| here(e.origin.instance) && e.origin.kind != OriginKind::OpenPort);
         let roots: Vec<_> = all.flat_map(|e| [e.lhs, e.rhs]).collect();
         let found = self.flat.exprs.dependencies(&roots);
-        let whens = self.flat.whens.iter().filter(|w| here(w.origin.instance)).flat_map(super::When::assigned);
+        let whens = self.flat.whens.iter().filter(|w| here(w.origin.instance)).flat_map(super::WhenClause::assigned);
         found.vars.into_iter().chain(found.ders).chain(whens).collect()
     }
 

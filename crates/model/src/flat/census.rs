@@ -3,19 +3,19 @@
 //! A component owes one equation for each variable of its own and for each flow of its ports; the circuit around it
 //! supplies the other half of every port and the values of its inputs (MLS 4.8).
 
-use super::numbers::Numbers;
+use super::numbers::ComponentNumbers;
 use super::{FlatModel, OriginKind, Variability};
 use crate::instance::{Instance, ScopeId};
 use crate::network::Network;
-use bramah_expr::{ExprId, Node, VarId};
-use bramah_syntax::ast::{Causality, ClassKind};
+use bramah_expr::{ExprId, ExprNode, VarId};
+use bramah_syntax::ast::{CausalityPrefix, ClassKind};
 use bramah_syntax::symbol::Symbol;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
 /// What a variable is to the component that holds it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum BalanceRole {
     /// A parameter or constant: nobody owes an equation.
     Fixed,
     /// The component owes its equation.
@@ -29,13 +29,13 @@ pub(super) enum Role {
 }
 
 /// The roles of all variables, by component.
-pub(super) struct Census {
+pub(super) struct BalanceCensus {
     /// The component that an instance is part of (connectors and records belong to theirs), by instance.
     pub owner: Vec<u32>,
     /// The component around each component; the model is its own.
     pub around: Vec<u32>,
     /// By flat variable.
-    pub role: Vec<Role>,
+    pub role: Vec<BalanceRole>,
     /// The component of each flat variable.
     pub holder: Vec<u32>,
     /// Equations that each component owes.
@@ -50,7 +50,7 @@ pub(super) struct Census {
     pub unjudged: Vec<bool>,
 }
 
-impl Census {
+impl BalanceCensus {
     pub(super) fn take(
         instance: &Instance<'_, '_>,
         network: &Network,
@@ -61,7 +61,7 @@ impl Census {
         let components = components(instance, flat, scopes);
         let n = scopes.len();
         let around = (0..n).map(|i| components[flat.instances[components[i] as usize].parent as usize]).collect();
-        let mut census = Census {
+        let mut census = BalanceCensus {
             owner: components,
             around,
             role: Vec::with_capacity(flat.variables.len()),
@@ -93,16 +93,16 @@ impl Census {
             let holder = self.owner[v.origin.instance as usize];
             let (port, public) = self.place(instance, flat, scopes, v.origin.instance, &data.name);
             let role = match (v.variability <= Variability::Parameter, data.causality) {
-                (true, _) => Role::Fixed,
-                (_, Some(Causality::Input)) if public => Role::Input,
+                (true, _) => BalanceRole::Fixed,
+                (_, Some(CausalityPrefix::Input)) if public => BalanceRole::Input,
                 // what leaves through a port is the component's to say
-                _ if data.stream => Role::Own,
-                (_, None) if port.is_some() && public && v.flow => Role::Flow,
-                (_, None) if port.is_some() && public => Role::Potential,
-                _ => Role::Own,
+                _ if data.stream => BalanceRole::Own,
+                (_, None) if port.is_some() && public && v.flow => BalanceRole::Flow,
+                (_, None) if port.is_some() && public => BalanceRole::Potential,
+                _ => BalanceRole::Own,
             };
-            if let (Some(port), Role::Potential | Role::Flow) = (port, role) {
-                *pairs.entry(port).or_default() += if role == Role::Flow { -1 } else { 1 };
+            if let (Some(port), BalanceRole::Potential | BalanceRole::Flow) = (port, role) {
+                *pairs.entry(port).or_default() += if role == BalanceRole::Flow { -1 } else { 1 };
             }
             self.role.push(role);
             self.holder.push(holder);
@@ -179,7 +179,7 @@ impl Census {
                 OriginKind::ConnectPotential | OriginKind::ConnectFlow | OriginKind::OpenPort => continue,
                 OriginKind::Binding => {
                     let var = as_variable(flat, e.lhs);
-                    if let Some(v) = var.filter(|v| self.role[v.index()] == Role::Input) {
+                    if let Some(v) = var.filter(|v| self.role[v.index()] == BalanceRole::Input) {
                         self.bound.insert(v);
                         continue;
                     }
@@ -201,7 +201,7 @@ impl Census {
 
     /// Joined signals: one equation less than members. Flows of own ports that are joined inside: one each.
     fn connections(&mut self, instance: &Instance<'_, '_>, network: &Network, scopes: &[ScopeId]) {
-        let numbers = Numbers::new(scopes);
+        let numbers = ComponentNumbers::new(scopes);
         for set in &network.flows {
             for &(i, outside) in &set.members {
                 let v = instance.variables[i as usize].id;
@@ -216,11 +216,11 @@ impl Census {
         }
         for &i in &network.open {
             let v = instance.variables[i as usize].id;
-            if self.role[v.index()] == Role::Own {
+            if self.role[v.index()] == BalanceRole::Own {
                 self.brought[self.holder[v.index()] as usize] += 1;
             }
         }
-        let mut groups = Groups::default();
+        let mut groups = VariableGroups::default();
         for pair in &network.signals {
             let at = numbers.of(pair.scope);
             if groups.join((at, pair.a), (at, pair.b)) {
@@ -230,7 +230,7 @@ impl Census {
         for set in &network.potentials {
             for &(i, _) in &set.members {
                 let data = &instance.variables[i as usize];
-                if data.causality.is_none() && self.role[data.id.index()] == Role::Own {
+                if data.causality.is_none() && self.role[data.id.index()] == BalanceRole::Own {
                     self.doubt(self.holder[data.id.index()]);
                 }
             }
@@ -241,14 +241,14 @@ impl Census {
         for (i, role) in self.role.iter().enumerate() {
             let holder = self.holder[i] as usize;
             match role {
-                Role::Own | Role::Flow => self.owed[holder] += 1,
-                Role::Input => {
+                BalanceRole::Own | BalanceRole::Flow => self.owed[holder] += 1,
+                BalanceRole::Input => {
                     let v = VarId(u32::try_from(i).expect("limited sizes"));
                     if holder != 0 && !self.bound.contains(&v) {
                         self.owed[self.around[holder] as usize] += 1;
                     }
                 }
-                Role::Fixed | Role::Potential => {}
+                BalanceRole::Fixed | BalanceRole::Potential => {}
             }
         }
     }
@@ -261,7 +261,7 @@ fn count(n: usize) -> i64 {
 /// The variable that an expression is.
 pub(super) fn as_variable(flat: &FlatModel, e: ExprId) -> Option<VarId> {
     match flat.exprs.node(e) {
-        Node::Var(v) => Some(v),
+        ExprNode::Var(v) => Some(v),
         _ => None,
     }
 }
@@ -286,11 +286,11 @@ fn is_connector(instance: &Instance<'_, '_>, scope: ScopeId) -> bool {
 
 /// Disjoint sets of variables, each set within one component.
 #[derive(Default)]
-pub(super) struct Groups {
+pub(super) struct VariableGroups {
     parent: FxHashMap<(u32, u32), (u32, u32)>,
 }
 
-impl Groups {
+impl VariableGroups {
     pub(super) fn root(&mut self, mut key: (u32, u32)) -> (u32, u32) {
         while let Some(&up) = self.parent.get(&key).filter(|up| **up != key) {
             key = up;

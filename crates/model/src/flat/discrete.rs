@@ -1,14 +1,14 @@
 //! What changes at events only must be given so: a `discrete` or Integer variable by its equation, `pre` by its argument.
 
-use super::{Equation, FlatModel, OriginKind, Type, Variability, When, WhenAction};
+use super::{FlatEquation, FlatModel, OriginKind, ScalarType, Variability, WhenAction, WhenClause};
 use crate::instance::Instance;
-use bramah_expr::{ExprId, Node, Unary, VarId};
+use bramah_expr::{ExprId, ExprNode, UnaryFunction, VarId};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Tells what is wrong; the expressions are still those of the instance.
 pub(super) fn check(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
-    let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(When::assigned).collect();
+    let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(WhenClause::assigned).collect();
     check_equations(instance, flat, &assigned);
     check_own_values(instance, flat);
     check_reinits(instance, flat);
@@ -16,9 +16,9 @@ pub(super) fn check(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
 }
 
 /// The variable that a side of an equation is, with the other side.
-fn bare(instance: &Instance<'_, '_>, e: &Equation) -> impl Iterator<Item = (VarId, ExprId)> + use<> {
+fn bare(instance: &Instance<'_, '_>, e: &FlatEquation) -> impl Iterator<Item = (VarId, ExprId)> + use<> {
     let of = |side, other| match instance.exprs.node(side) {
-        Node::Var(v) => Some((v, other)),
+        ExprNode::Var(v) => Some((v, other)),
         _ => None,
     };
     [of(e.lhs, e.rhs), of(e.rhs, e.lhs)].into_iter().flatten()
@@ -27,7 +27,7 @@ fn bare(instance: &Instance<'_, '_>, e: &Equation) -> impl Iterator<Item = (VarI
 fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHashSet<VarId>) {
     let stepping = |v: VarId| {
         let variable = &flat.variables[v.index()];
-        let declared = variable.variability == Variability::Discrete || variable.ty == Type::Integer;
+        let declared = variable.variability == Variability::Discrete || variable.ty == ScalarType::Integer;
         declared && variable.variability > Variability::Parameter && !variable.input && !assigned.contains(&v)
     };
     let mut given: FxHashSet<VarId> = FxHashSet::default();
@@ -36,7 +36,7 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
         for (v, other) in bare(instance, e).filter(|b| stepping(b.0)) {
             if instance.variability(other) <= Variability::Discrete {
                 given.insert(v);
-            } else if !matches!(instance.exprs.node(other), Node::Var(_)) && is_smooth(instance, other) {
+            } else if !matches!(instance.exprs.node(other), ExprNode::Var(_)) && is_smooth(instance, other) {
                 doubtful.push((v, e.origin.span));
             }
         }
@@ -44,11 +44,11 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
     for e in &flat.equations {
         for (v, other) in bare(instance, e) {
             let variable = &flat.variables[v.index()];
-            let real = variable.variability == Variability::Discrete && variable.ty == Type::Real;
+            let real = variable.variability == Variability::Discrete && variable.ty == ScalarType::Real;
             let own = real
                 && !variable.input
                 && !assigned.contains(&v)
-                && !matches!(instance.exprs.node(other), Node::Var(_));
+                && !matches!(instance.exprs.node(other), ExprNode::Var(_));
             let written = matches!(e.origin.kind, OriginKind::Declared | OriginKind::Binding);
             if own && written && instance.variability(other) <= Variability::Discrete {
                 let message = format!("`{}` is `discrete` and gets its value outside `when`", variable.name);
@@ -63,7 +63,7 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
     }
     for (v, span) in doubtful.into_iter().filter(|(v, _)| !given.contains(v)) {
         let variable = &flat.variables[v.index()];
-        let kind = if variable.ty == Type::Integer { "an Integer" } else { "`discrete`" };
+        let kind = if variable.ty == ScalarType::Integer { "an Integer" } else { "`discrete`" };
         let message = format!("`{}` is {kind} and is given a value that changes all the time", variable.name);
         let d = Diagnostic::new(Code::TypeMismatch, message).at(span, "this changes between events");
         instance.diagnostics.push(d.at(variable.origin.span, "declared here").help(
@@ -77,7 +77,7 @@ fn check_own_values(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     for action in flat.whens.iter().flat_map(|w| &w.branches).flat_map(|b| &b.actions) {
         let WhenAction::Assign { variable, value, origin } = action else { continue };
         let v = &flat.variables[variable.index()];
-        if v.ty == Type::Real || !instance.exprs.dependencies(&[*value]).vars.contains(variable) {
+        if v.ty == ScalarType::Real || !instance.exprs.dependencies(&[*value]).vars.contains(variable) {
             continue;
         }
         let name = &v.name;
@@ -112,8 +112,8 @@ fn check_reinits(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
 /// Neither calls nor switches: what these give may be constant between events all the same.
 fn is_smooth(instance: &Instance<'_, '_>, e: ExprId) -> bool {
     let steps = |e: &ExprId| match instance.exprs.node(*e) {
-        Node::Unary(op, _) => matches!(op, Unary::Floor | Unary::Sign),
-        node => matches!(node, Node::Call(..) | Node::Rel(..) | Node::If(..)),
+        ExprNode::Unary(op, _) => matches!(op, UnaryFunction::Floor | UnaryFunction::Sign),
+        node => matches!(node, ExprNode::Call(..) | ExprNode::Rel(..) | ExprNode::If(..)),
     };
     !instance.exprs.reachable(&[e], |_| true).iter().any(steps)
 }
@@ -121,10 +121,10 @@ fn is_smooth(instance: &Instance<'_, '_>, e: ExprId) -> bool {
 fn check_pre(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHashSet<VarId>) {
     let smooth = |v: VarId| {
         let variable = flat.variables.get(v.index());
-        variable.is_some_and(|x| x.ty == Type::Real && x.variability == Variability::Continuous)
+        variable.is_some_and(|x| x.ty == ScalarType::Real && x.variability == Variability::Continuous)
             && !assigned.contains(&v)
     };
-    let wrong = |e: ExprId| matches!(instance.exprs.node(e), Node::Pre(v) if smooth(v));
+    let wrong = |e: ExprId| matches!(instance.exprs.node(e), ExprNode::Pre(v) if smooth(v));
     if !(0..).map(ExprId).take(instance.exprs.len()).any(wrong) {
         return;
     }

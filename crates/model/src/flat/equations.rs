@@ -1,30 +1,30 @@
 //! Equation and algorithm sections of every component, made scalar.
 
-use super::numbers::Numbers;
+use super::numbers::ComponentNumbers;
 use super::{
-    Assert, Conserved, Equation, FlatModel, Message, MessagePart, Origin, OriginKind, Type, Variability, When,
-    WhenAction, WhenBranch,
+    ConservationDeclaration, ElementOrigin, FlatAssertion, FlatEquation, FlatModel, MessagePart, MessageTemplate,
+    OriginKind, ScalarType, Variability, WhenAction, WhenBranch, WhenClause,
 };
-use crate::instance::algorithm::{AlgorithmBranch, AlgorithmCall, AlgorithmWhen, Asserted, assigned};
-use crate::instance::value::Val;
-use crate::instance::{Instance, ScopeId, View};
+use crate::instance::algorithm::{AlgorithmBranch, AlgorithmCall, AlgorithmWhen, AssertArguments, assigned};
+use crate::instance::value::ModelicaValue;
+use crate::instance::{Instance, LookupContext, ScopeId};
 use crate::network;
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::ast::{self, ClassBody, EquationKind, Expr, ExprKind, Statement};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use rustc_hash::FxHashSet;
 
 /// Scalar sides of an equation with the place it comes from.
-struct Pair {
+struct EquationSides {
     lhs: ExprId,
     rhs: ExprId,
     span: Span,
 }
 
-pub(super) struct Walker<'w, 'a, 'l> {
+pub(super) struct EquationFlattener<'w, 'a, 'l> {
     instance: &'w mut Instance<'a, 'l>,
-    numbers: &'w Numbers,
+    numbers: &'w ComponentNumbers,
     flat: &'w mut FlatModel,
     /// Assertions met inside the equations of an `if` with their conditions.
     guards: Vec<ExprId>,
@@ -32,9 +32,13 @@ pub(super) struct Walker<'w, 'a, 'l> {
     determined: Vec<VarId>,
 }
 
-impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
-    pub(super) fn new(instance: &'w mut Instance<'a, 'l>, numbers: &'w Numbers, flat: &'w mut FlatModel) -> Self {
-        Walker { instance, numbers, flat, guards: Vec::new(), determined: Vec::new() }
+impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
+    pub(super) fn new(
+        instance: &'w mut Instance<'a, 'l>,
+        numbers: &'w ComponentNumbers,
+        flat: &'w mut FlatModel,
+    ) -> Self {
+        EquationFlattener { instance, numbers, flat, guards: Vec::new(), determined: Vec::new() }
     }
 
     pub(super) fn walk(&mut self, scopes: &[ScopeId]) {
@@ -43,7 +47,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             let template = self.instance.scope(scope).template.clone();
             for (base, i) in template.bases.iter().zip(0u32..) {
                 let ClassBody::Long(body) = &base.ast.body else { continue };
-                self.body(body, View { scope, base: i });
+                self.body(body, LookupContext { scope, base: i });
             }
             if self.instance.diagnostics.len() > mark
                 && let Some(outermost) = self.instance.outermost(scope)
@@ -54,7 +58,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    fn body(&mut self, body: &'a ast::LongBody, view: View) {
+    fn body(&mut self, body: &'a ast::LongBody, view: LookupContext) {
         let pairs = self.equations(&body.equations, view);
         self.push(pairs, view, false);
         let before = self.flat.asserts.len();
@@ -71,15 +75,15 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    fn origin(&self, span: Span, view: View) -> Origin {
+    fn origin(&self, span: Span, view: LookupContext) -> ElementOrigin {
         let instance = self.numbers.of(view.scope);
-        Origin { span, instance, kind: OriginKind::Declared }
+        ElementOrigin { span, instance, kind: OriginKind::Declared }
     }
 
-    fn push(&mut self, pairs: Vec<Pair>, view: View, initial: bool) {
+    fn push(&mut self, pairs: Vec<EquationSides>, view: LookupContext, initial: bool) {
         for p in pairs {
             let origin = self.origin(p.span, view);
-            let equation = Equation { lhs: p.lhs, rhs: p.rhs, origin };
+            let equation = FlatEquation { lhs: p.lhs, rhs: p.rhs, origin };
             if initial {
                 self.flat.initial_equations.push(equation);
             } else {
@@ -89,7 +93,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// Scalar equations of a list; `when` and `assert` go straight into the flat model.
-    fn equations(&mut self, equations: &'a [ast::Equation], view: View) -> Vec<Pair> {
+    fn equations(&mut self, equations: &'a [ast::Equation], view: LookupContext) -> Vec<EquationSides> {
         let mut pairs = Vec::new();
         for e in equations {
             self.equation(e, view, &mut pairs);
@@ -99,7 +103,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// What the equation just read needs to have a meaning, under the conditions around it.
-    fn watch(&mut self, view: View) {
+    fn watch(&mut self, view: LookupContext) {
         let mut calls = self.instance.statements().take_calls();
         for call in &mut calls {
             for &guard in &self.guards {
@@ -109,7 +113,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         watch(self.instance, self.flat, calls, self.numbers.of(view.scope));
     }
 
-    fn equation(&mut self, e: &'a ast::Equation, view: View, out: &mut Vec<Pair>) {
+    fn equation(&mut self, e: &'a ast::Equation, view: LookupContext, out: &mut Vec<EquationSides>) {
         match &e.kind {
             EquationKind::Connect(..) => {}
             EquationKind::Equal(l, r) => self.equal(l, r, view, e.span, out),
@@ -123,10 +127,10 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     fn for_equation(
         &mut self,
-        iterators: &'a [ast::Iterator],
+        iterators: &'a [ast::ForIndex],
         body: &'a [ast::Equation],
-        view: View,
-        out: &mut Vec<Pair>,
+        view: LookupContext,
+        out: &mut Vec<EquationSides>,
     ) {
         let Some((first, rest)) = iterators.split_first() else {
             for e in body {
@@ -142,7 +146,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    fn equal(&mut self, l: &'a Expr, r: &'a Expr, view: View, span: Span, out: &mut Vec<Pair>) {
+    fn equal(&mut self, l: &'a Expr, r: &'a Expr, view: LookupContext, span: Span, out: &mut Vec<EquationSides>) {
         if let ExprKind::Tuple(targets) = &l.kind {
             self.tuple(targets, r, view, span, out);
             return;
@@ -153,10 +157,17 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    fn tuple(&mut self, targets: &'a [Option<Expr>], r: &'a Expr, view: View, span: Span, out: &mut Vec<Pair>) {
+    fn tuple(
+        &mut self,
+        targets: &'a [Option<Expr>],
+        r: &'a Expr,
+        view: LookupContext,
+        span: Span,
+        out: &mut Vec<EquationSides>,
+    ) {
         let Some(value) = self.instance.evaluator().eval_all(r, view) else { return };
         let values = match &value {
-            Val::Tuple(values) => values.to_vec(),
+            ModelicaValue::Tuple(values) => values.to_vec(),
             other => vec![other.clone()],
         };
         if targets.len() > values.len() {
@@ -174,18 +185,18 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    fn equal_values(&mut self, a: &Val, b: &Val, span: Span, out: &mut Vec<Pair>) {
-        let first = |v: &Val| match v {
-            Val::Tuple(values) => values[0].clone(),
+    fn equal_values(&mut self, a: &ModelicaValue, b: &ModelicaValue, span: Span, out: &mut Vec<EquationSides>) {
+        let first = |v: &ModelicaValue| match v {
+            ModelicaValue::Tuple(values) => values[0].clone(),
             other => other.clone(),
         };
         let (a, b) = (first(a), first(b));
         let mut pairs = Vec::new();
         let zipped = a.zip(&b, &mut |x, y, _| {
-            pairs.push(Pair { lhs: x, rhs: y, span });
+            pairs.push(EquationSides { lhs: x, rhs: y, span });
             x
         });
-        if zipped.is_none() || matches!(a, Val::Text(_)) {
+        if zipped.is_none() || matches!(a, ModelicaValue::Text(_)) {
             let code = if a.dims() == b.dims() { Code::TypeMismatch } else { Code::SizeMismatch };
             self.instance.diagnostics.push(
                 Diagnostic::new(code, "the two sides of this equation do not fit")
@@ -201,9 +212,9 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         &mut self,
         branches: &'a [(Expr, Vec<ast::Equation>)],
         otherwise: &'a [ast::Equation],
-        view: View,
+        view: LookupContext,
         span: Span,
-        out: &mut Vec<Pair>,
+        out: &mut Vec<EquationSides>,
     ) {
         let Some(((condition, body), rest)) = branches.split_first() else {
             for e in otherwise {
@@ -212,7 +223,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             return;
         };
         let Some(c) = self.instance.evaluator().eval(condition, view) else { return };
-        let Some((test, Type::Boolean)) = c.scalar() else {
+        let Some((test, ScalarType::Boolean)) = c.scalar() else {
             self.instance.diagnostics.push(
                 Diagnostic::new(Code::TypeMismatch, "a condition must be a Boolean")
                     .at(condition.span, format!("this is {}", c.describe())),
@@ -243,7 +254,14 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// `if c then a = x; else a = y;` becomes `a = if c then x else y`; branches must have equally many equations.
-    fn merge(&mut self, test: ExprId, a: Vec<Pair>, mut b: Vec<Pair>, span: Span, out: &mut Vec<Pair>) {
+    fn merge(
+        &mut self,
+        test: ExprId,
+        a: Vec<EquationSides>,
+        mut b: Vec<EquationSides>,
+        span: Span,
+        out: &mut Vec<EquationSides>,
+    ) {
         if a.len() != b.len() {
             self.instance.diagnostics.push(
                 Diagnostic::new(Code::Balance, "the branches of this `if` have different numbers of equations")
@@ -258,16 +276,16 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             let q = b.remove(at);
             let span = p.span;
             if p.lhs == q.lhs {
-                out.push(Pair { lhs: p.lhs, rhs: pool.if_(test, p.rhs, q.rhs), span });
+                out.push(EquationSides { lhs: p.lhs, rhs: pool.if_(test, p.rhs, q.rhs), span });
             } else {
                 let (x, y) = (pool.sub(p.lhs, p.rhs), pool.sub(q.lhs, q.rhs));
-                out.push(Pair { lhs: pool.if_(test, x, y), rhs: Exprs::ZERO, span });
+                out.push(EquationSides { lhs: pool.if_(test, x, y), rhs: Exprs::ZERO, span });
             }
         }
     }
 
-    fn when_equation(&mut self, branches: &'a [(Expr, Vec<ast::Equation>)], view: View, span: Span) {
-        let mut when = When { branches: Vec::new(), origin: self.origin(span, view) };
+    fn when_equation(&mut self, branches: &'a [(Expr, Vec<ast::Equation>)], view: LookupContext, span: Span) {
+        let mut when = WhenClause { branches: Vec::new(), origin: self.origin(span, view) };
         let mut first: Option<Vec<VarId>> = None;
         for (condition, body) in branches {
             let Some(conditions) = self.instance.statements().when_conditions(condition, view) else { continue };
@@ -315,7 +333,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         );
     }
 
-    fn when_body(&mut self, e: &'a ast::Equation, view: View, guard: ExprId, out: &mut Vec<WhenAction>) {
+    fn when_body(&mut self, e: &'a ast::Equation, view: LookupContext, guard: ExprId, out: &mut Vec<WhenAction>) {
         match &e.kind {
             EquationKind::Equal(l, r) => {
                 let mut pairs = Vec::new();
@@ -346,9 +364,9 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 
     fn when_for(
         &mut self,
-        iterators: &'a [ast::Iterator],
+        iterators: &'a [ast::ForIndex],
         body: &'a [ast::Equation],
-        view: View,
+        view: LookupContext,
         guard: ExprId,
         out: &mut Vec<WhenAction>,
     ) {
@@ -370,7 +388,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         &mut self,
         branches: &'a [(Expr, Vec<ast::Equation>)],
         otherwise: &'a [ast::Equation],
-        view: View,
+        view: LookupContext,
         guard: ExprId,
         out: &mut Vec<WhenAction>,
     ) {
@@ -423,11 +441,11 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// An assignment; under a guard the variable keeps what it would otherwise get.
-    fn when_assign(&mut self, p: Pair, view: View, guard: ExprId, out: &mut Vec<WhenAction>) {
+    fn when_assign(&mut self, p: EquationSides, view: LookupContext, guard: ExprId, out: &mut Vec<WhenAction>) {
         let pool = &mut self.instance.exprs;
         let (variable, value) = match (pool.node(p.lhs), pool.node(p.rhs)) {
-            (Node::Var(v), _) => (v, p.rhs),
-            (_, Node::Var(v)) => (v, p.lhs),
+            (ExprNode::Var(v), _) => (v, p.rhs),
+            (_, ExprNode::Var(v)) => (v, p.lhs),
             _ => {
                 self.instance.diagnostics.push(
                     Diagnostic::new(Code::Unsupported, "an equation in a `when` must have a variable on its left side")
@@ -455,7 +473,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    fn when_call(&mut self, call: &'a Expr, view: View, guard: ExprId, span: Span, out: &mut Vec<WhenAction>) {
+    fn when_call(&mut self, call: &'a Expr, view: LookupContext, guard: ExprId, span: Span, out: &mut Vec<WhenAction>) {
         let ExprKind::Call { function, args, .. } = &call.kind else { return };
         let origin = self.origin(span, view);
         match function.parts[0].name.name.as_str() {
@@ -472,7 +490,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
                 let mut pairs = Vec::new();
                 self.equal_values(&t, &v, span, &mut pairs);
                 for p in pairs {
-                    let Node::Var(variable) = self.instance.exprs.node(p.lhs) else {
+                    let ExprNode::Var(variable) = self.instance.exprs.node(p.lhs) else {
                         self.bad_call(span, "`reinit` needs a variable as its first argument");
                         return;
                     };
@@ -501,7 +519,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             }
             // a function without outputs says what must hold, or does what no model can see
             _ => match self.instance.evaluator().eval_all(call, view) {
-                Some(Val::Tuple(values)) if values.is_empty() => {}
+                Some(ModelicaValue::Tuple(values)) if values.is_empty() => {}
                 None => {}
                 _ => self.bad_call(
                     span,
@@ -512,26 +530,26 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// `Connections.conserved(quantity, rate, state)`, of scalars.
-    fn conserved(&mut self, call: &'a Expr, view: View, span: Span) {
+    fn conserved(&mut self, call: &'a Expr, view: LookupContext, span: Span) {
         const FORM: &str =
             "`Connections.conserved(quantity, rate, state)` takes three real numbers, the last one a variable";
         let ExprKind::Call { args, .. } = &call.kind else { return };
         let mut values = Vec::with_capacity(args.len());
         for arg in args {
             let Some(value) = self.instance.evaluator().eval(arg, view) else { return };
-            values.extend(value.scalar().filter(|(_, ty)| *ty == Type::Real).map(|(e, _)| e));
+            values.extend(value.scalar().filter(|(_, ty)| *ty == ScalarType::Real).map(|(e, _)| e));
         }
         let origin = self.origin(span, view);
         match values[..] {
-            [quantity, rate, state] if matches!(self.instance.exprs.node(state), Node::Var(_)) => {
-                self.flat.conserved.push(Conserved { quantity, rate, state, origin });
+            [quantity, rate, state] if matches!(self.instance.exprs.node(state), ExprNode::Var(_)) => {
+                self.flat.conserved.push(ConservationDeclaration { quantity, rate, state, origin });
             }
             _ => self.bad_call(span, FORM),
         }
     }
 
     fn at_start_only(&mut self, condition: ExprId) -> ExprId {
-        let start = self.instance.exprs.intern(Node::Initial);
+        let start = self.instance.exprs.intern(ExprNode::Initial);
         self.instance.exprs.implies(start, condition)
     }
 
@@ -547,7 +565,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         );
     }
 
-    fn call(&mut self, call: &'a Expr, view: View, span: Span) {
+    fn call(&mut self, call: &'a Expr, view: LookupContext, span: Span) {
         let ExprKind::Call { function, .. } = &call.kind else { return };
         match function.parts[0].name.name.as_str() {
             "assert" => {
@@ -573,7 +591,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// An assertion in the branches of the `if` equations around it.
-    fn push_guarded(&mut self, assert: Option<Assert>) {
+    fn push_guarded(&mut self, assert: Option<FlatAssertion>) {
         let Some(mut assert) = assert else { return };
         for guard in self.guards.clone().into_iter().rev() {
             assert.condition = self.instance.exprs.implies(guard, assert.condition);
@@ -583,28 +601,28 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    fn assertion(&mut self, call: &'a Expr, view: View, span: Span) -> Option<Assert> {
-        let Asserted { condition, message: text, warning } = self.instance.statements().assertion(call, view)?;
-        Some(Assert { condition, message: message(text), warning, origin: self.origin(span, view) })
+    fn assertion(&mut self, call: &'a Expr, view: LookupContext, span: Span) -> Option<FlatAssertion> {
+        let AssertArguments { condition, message: text, warning } = self.instance.statements().assertion(call, view)?;
+        Some(FlatAssertion { condition, message: message(text), warning, origin: self.origin(span, view) })
     }
 
     /// An algorithm section: every variable it assigns gets the value it has at the end (MLS 11.1).
-    fn algorithm(&mut self, section: &'a [Statement], view: View, initial: bool) {
+    fn algorithm(&mut self, section: &'a [Statement], view: LookupContext, initial: bool) {
         let (mut always, mut in_when) = (Vec::new(), Vec::new());
         assigned(section, false, &mut always, &mut in_when);
-        let mut originals: Vec<Assigned> = Vec::new();
+        let mut originals: Vec<AlgorithmTarget> = Vec::new();
         let mut count = 0;
         for name in always.iter().chain(&in_when).map(|r| r.parts[0].name.name) {
             if originals.iter().any(|o| o.name == name) {
                 continue;
             }
-            let of = |targets: &[&'a ast::Reference]| -> Vec<&'a ast::Reference> {
+            let of = |targets: &[&'a ast::ComponentReference]| -> Vec<&'a ast::ComponentReference> {
                 targets.iter().copied().filter(|r| r.parts[0].name.name == name).collect()
             };
             let (always, in_when) = (of(&always), of(&in_when));
-            let targets: Vec<&'a ast::Reference> = always.iter().chain(&in_when).copied().collect();
+            let targets: Vec<&'a ast::ComponentReference> = always.iter().chain(&in_when).copied().collect();
             let Some(own) = self.instance.statements().assigned_value(view, &targets) else { return };
-            let scalars = |targets: &[&'a ast::Reference]| {
+            let scalars = |targets: &[&'a ast::ComponentReference]| {
                 let mut found = FxHashSet::default();
                 let below: Vec<&[ast::ReferencePart]> = targets.iter().map(|r| &r.parts[1..]).collect();
                 scalars_of(&own, &below, &mut found);
@@ -612,12 +630,12 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
             };
             let (all, in_when) = (scalars(&targets), scalars(&in_when));
             let start = self.algorithm_start(&own, &all, &in_when);
-            originals.push(Assigned { name, own, in_when });
+            originals.push(AlgorithmTarget { name, own, in_when });
             self.instance.statements().push_local(name, start);
             count += 1;
         }
         let done = self.instance.statements().run_section(section, view, count);
-        let results: Vec<Val> = self.instance.statements().take_locals(count);
+        let results: Vec<ModelicaValue> = self.instance.statements().take_locals(count);
         let whens = self.instance.statements().take_whens();
         let calls = self.instance.statements().take_calls();
         if done.is_none() {
@@ -634,14 +652,14 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// An `assert` or `terminate` of an algorithm section outside `when`; one of an initial section counts at the start only.
-    fn algorithm_call(&mut self, call: AlgorithmCall, view: View, initial: bool) {
+    fn algorithm_call(&mut self, call: AlgorithmCall, view: LookupContext, initial: bool) {
         let span = call.span;
         let origin = self.origin(span, view);
         if call.condition.is_none() && initial {
             let mut actions = Vec::new();
             self.algorithm_action(call, view, &mut actions);
-            let conditions = vec![self.instance.exprs.intern(Node::Initial)];
-            self.flat.whens.push(When { branches: vec![WhenBranch { conditions, actions }], origin });
+            let conditions = vec![self.instance.exprs.intern(ExprNode::Initial)];
+            self.flat.whens.push(WhenClause { branches: vec![WhenBranch { conditions, actions }], origin });
             return;
         }
         let Some(mut assert) = assert_of(self.instance, call, origin) else {
@@ -657,7 +675,7 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// An `assert` or `terminate` inside a `when` of an algorithm section.
-    fn algorithm_action(&mut self, call: AlgorithmCall, view: View, out: &mut Vec<WhenAction>) {
+    fn algorithm_action(&mut self, call: AlgorithmCall, view: LookupContext, out: &mut Vec<WhenAction>) {
         let origin = self.origin(call.span, view);
         if call.condition.is_none() {
             out.push(WhenAction::Terminate { message: message(call.message), guard: call.guard, origin });
@@ -682,12 +700,17 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     }
 
     /// What the variables that the section assigns hold before it: their `pre` value if discrete, their start value else.
-    fn algorithm_start(&mut self, own: &Val, assigned: &FxHashSet<ExprId>, in_when: &FxHashSet<ExprId>) -> Val {
+    fn algorithm_start(
+        &mut self,
+        own: &ModelicaValue,
+        assigned: &FxHashSet<ExprId>,
+        in_when: &FxHashSet<ExprId>,
+    ) -> ModelicaValue {
         let variables = &self.flat.variables;
         let pool = &mut self.instance.exprs;
         own.map(&mut |e, ty| match pool.node(e) {
-            Node::Var(v) if in_when.contains(&e) || ty != Type::Real && assigned.contains(&e) => pool.pre(v),
-            Node::Var(v) if assigned.contains(&e) => match variables[v.index()].variability {
+            ExprNode::Var(v) if in_when.contains(&e) || ty != ScalarType::Real && assigned.contains(&e) => pool.pre(v),
+            ExprNode::Var(v) if assigned.contains(&e) => match variables[v.index()].variability {
                 Variability::Discrete => pool.pre(v),
                 _ => variables[v.index()].start.unwrap_or(Exprs::ZERO),
             },
@@ -698,21 +721,21 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
     /// The equations that the section comes to, for all that it does not hold between the events of its `when`s.
     fn section_results(
         &mut self,
-        originals: &[Assigned],
-        results: &[Val],
+        originals: &[AlgorithmTarget],
+        results: &[ModelicaValue],
         whens: &[AlgorithmWhen],
-        view: View,
+        view: LookupContext,
         section: &'a [Statement],
         initial: bool,
     ) {
         let span = section.first().map_or(self.flat.instances[0].span, |s| s.span);
-        for (Assigned { name, own, in_when }, result) in originals.iter().zip(results) {
+        for (AlgorithmTarget { name, own, in_when }, result) in originals.iter().zip(results) {
             let held = whens.iter().any(|w| w.branches.iter().any(|b| b.values.iter().any(|(n, _)| n == name)));
             let mut pairs = Vec::new();
             own.zip(result, &mut |x, y, _| {
                 // a variable that nothing assigns is what it was
                 if x != y && !(held && in_when.contains(&x)) {
-                    pairs.push(Pair { lhs: x, rhs: y, span });
+                    pairs.push(EquationSides { lhs: x, rhs: y, span });
                 }
                 x
             });
@@ -720,18 +743,20 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
         }
     }
 
-    fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[Assigned], view: View) {
+    fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[AlgorithmTarget], view: LookupContext) {
         let origin = self.origin(when.span, view);
-        let mut made = When { branches: Vec::new(), origin };
+        let mut made = WhenClause { branches: Vec::new(), origin };
         for branch in when.branches {
             let mut actions = Vec::new();
             for (name, value) in &branch.values {
-                let Some(Assigned { own, in_when, .. }) = originals.iter().find(|o| o.name == *name) else { continue };
+                let Some(AlgorithmTarget { own, in_when, .. }) = originals.iter().find(|o| o.name == *name) else {
+                    continue;
+                };
                 let (mut to, mut from) = (Vec::new(), Vec::new());
                 own.scalars(&mut to);
                 value.scalars(&mut from);
                 for (t, value) in to.into_iter().zip(from).filter(|(t, _)| in_when.contains(t)) {
-                    if let Node::Var(variable) = self.instance.exprs.node(t) {
+                    if let ExprNode::Var(variable) = self.instance.exprs.node(t) {
                         actions.push(WhenAction::Assign { variable, value, origin });
                     }
                 }
@@ -746,20 +771,22 @@ impl<'w, 'a, 'l> Walker<'w, 'a, 'l> {
 }
 
 /// An element of which an algorithm section assigns something.
-struct Assigned {
+struct AlgorithmTarget {
     name: Symbol,
     /// Its variables.
-    own: Val,
+    own: ModelicaValue,
     /// Those that are assigned in a `when`.
     in_when: FxHashSet<ExprId>,
 }
 
 /// The scalars of a value that references name, which begin below it; of an array all, whatever its indices say.
-fn scalars_of(value: &Val, targets: &[&[ast::ReferencePart]], found: &mut FxHashSet<ExprId>) {
+fn scalars_of(value: &ModelicaValue, targets: &[&[ast::ReferencePart]], found: &mut FxHashSet<ExprId>) {
     match value {
         _ if targets.iter().any(|parts| parts.is_empty()) => found.extend(value.all_scalars()),
-        Val::Array { elements, .. } => elements.iter().for_each(|element| scalars_of(element, targets, found)),
-        Val::Record(record) => {
+        ModelicaValue::Array { elements, .. } => {
+            elements.iter().for_each(|element| scalars_of(element, targets, found))
+        }
+        ModelicaValue::Record(record) => {
             for (name, field) in &record.fields {
                 let below: Vec<&[ast::ReferencePart]> =
                     targets.iter().filter(|parts| parts[0].name.name == *name).map(|parts| &parts[1..]).collect();
@@ -775,7 +802,11 @@ fn scalars_of(value: &Val, targets: &[&[ast::ReferencePart]], found: &mut FxHash
 /// Several `when`s of an algorithm that assign one variable become one: of those that fire at once the last one counts
 /// (MLS 11.2.7). Where one of them reads what another one assigns, or a branch leaves the variable alone, they stay as they
 /// are, and the variable is determined twice.
-fn in_order(instance: &Instance<'_, '_>, mut whens: Vec<AlgorithmWhen>, originals: &[Assigned]) -> Vec<AlgorithmWhen> {
+fn in_order(
+    instance: &Instance<'_, '_>,
+    mut whens: Vec<AlgorithmWhen>,
+    originals: &[AlgorithmTarget],
+) -> Vec<AlgorithmWhen> {
     let assigned = |w: &AlgorithmWhen| -> Vec<Symbol> {
         w.branches.iter().flat_map(|b| &b.values).map(|(name, _)| *name).collect()
     };
@@ -784,7 +815,7 @@ fn in_order(instance: &Instance<'_, '_>, mut whens: Vec<AlgorithmWhen>, original
         let values: Vec<ExprId> =
             w.branches.iter().flat_map(|b| &b.values).flat_map(|(_, v)| v.all_scalars()).collect();
         let before = instance.exprs.dependencies(&values).pres;
-        own.iter().any(|&e| matches!(instance.exprs.node(e), Node::Var(v) if before.contains(&v)))
+        own.iter().any(|&e| matches!(instance.exprs.node(e), ExprNode::Var(v) if before.contains(&v)))
     };
     let mut seen: Vec<Symbol> = Vec::new();
     for name in whens.iter().flat_map(assigned).collect::<Vec<_>>() {
@@ -817,9 +848,9 @@ fn in_order(instance: &Instance<'_, '_>, mut whens: Vec<AlgorithmWhen>, original
 /// What expressions of an instance need to have a meaning, each once.
 pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls: Vec<AlgorithmCall>, holder: u32) {
     for call in calls {
-        let origin = Origin { span: call.span, instance: holder, kind: OriginKind::Declared };
+        let origin = ElementOrigin { span: call.span, instance: holder, kind: OriginKind::Declared };
         let Some(assert) = assert_of(instance, call, origin) else { continue };
-        let known = |a: &Assert| a.condition == assert.condition && a.origin.span == origin.span;
+        let known = |a: &FlatAssertion| a.condition == assert.condition && a.origin.span == origin.span;
         if assert.condition != Exprs::ONE && !flat.asserts.iter().rev().take(8).any(known) {
             flat.asserts.push(assert);
         }
@@ -827,14 +858,18 @@ pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls
 }
 
 /// An `assert` of an algorithm as one of the model; `None` for a `terminate`.
-pub(super) fn assert_of(instance: &mut Instance<'_, '_>, call: AlgorithmCall, origin: Origin) -> Option<Assert> {
+pub(super) fn assert_of(
+    instance: &mut Instance<'_, '_>,
+    call: AlgorithmCall,
+    origin: ElementOrigin,
+) -> Option<FlatAssertion> {
     let condition = instance.exprs.implies(call.guard, call.condition?);
-    Some(Assert { condition, message: message(call.message), warning: call.warning, origin })
+    Some(FlatAssertion { condition, message: message(call.message), warning: call.warning, origin })
 }
 
-fn message(text: Option<Val>) -> Message {
+fn message(text: Option<ModelicaValue>) -> MessageTemplate {
     match text {
-        Some(Val::Text(parts)) => {
+        Some(ModelicaValue::Text(parts)) => {
             let mut joined: Vec<MessagePart> = Vec::new();
             for part in parts.iter() {
                 match (joined.last_mut(), part) {
@@ -842,8 +877,8 @@ fn message(text: Option<Val>) -> Message {
                     _ => joined.push(part.clone()),
                 }
             }
-            Message { parts: joined }
+            MessageTemplate { parts: joined }
         }
-        _ => Message::default(),
+        _ => MessageTemplate::default(),
     }
 }

@@ -4,7 +4,7 @@
 //! would accuse the innocent.
 
 use super::census::as_variable;
-use super::{Equation, FlatModel, OriginKind};
+use super::{FlatEquation, FlatModel, OriginKind};
 use bramah_expr::{Exprs, VarId};
 use bramah_syntax::diag::{Code, Diagnostic};
 
@@ -52,7 +52,7 @@ fn held(flat: &FlatModel, open: &[usize]) -> FlatModel {
     changed
 }
 
-fn open_port(flat: &FlatModel, e: &Equation) -> Diagnostic {
+fn open_port(flat: &FlatModel, e: &FlatEquation) -> Diagnostic {
     let flow = as_variable(flat, e.lhs).map_or("", |v| &flat.variables[v.index()].name);
     let port = flow.rsplit_once('.').map_or(flow, |(p, _)| p);
     let info = &flat.instances[e.origin.instance as usize];

@@ -1,32 +1,32 @@
 //! From the component tree to scalar variables and equations.
 
-use super::census::Census;
-use super::equations::Walker;
-use super::numbers::Numbers;
+use super::census::BalanceCensus;
+use super::equations::EquationFlattener;
+use super::numbers::ComponentNumbers;
 use super::{
-    Confidence, Equation, Experiment, FlatModel, InstanceInfo, Origin, OriginKind, StateSelect, Type, Variability,
-    Variable,
+    ElementOrigin, ExperimentAnnotation, FlatEquation, FlatModel, FlatVariable, InstanceInfo, OriginKind, ScalarType,
+    StartValueConfidence, StateSelect, Variability,
 };
 use super::{balance, discrete, equations, overconstrained, ports, streams};
-use crate::instance::{ElementState, Instance, Node, ScopeId, View};
+use crate::instance::{ElementState, Instance, InstanceNode, LookupContext, ScopeId};
 use crate::network::{Network, component_scopes};
 use bramah_expr::{ExprId, Exprs, VarId};
-use bramah_syntax::ast::{self, ArgumentKind, ClassBody, Modification};
-use bramah_syntax::diag::{Checked, Code, Diagnostic};
+use bramah_syntax::ast::{self, ClassBody, Modification, ModificationArgumentKind};
+use bramah_syntax::diag::{Code, Diagnostic, StageResult};
 use bramah_syntax::symbol::Symbol;
 
 /// Flattens an instance. The instance's expression pool moves into the flat model.
-pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<FlatModel> {
+pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResult<FlatModel> {
     let scopes = component_scopes(instance);
     let mut flat = FlatModel { class: class_name(instance, instance.root), ..FlatModel::default() };
-    let numbers = Numbers::new(&scopes);
+    let numbers = ComponentNumbers::new(&scopes);
     flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
     flat.experiment = experiment(instance);
     flat.varied = instance.varied;
     streams::prepare(instance, network);
     variables(instance, &numbers, &mut flat);
     instance.parameters().check_texts();
-    Walker::new(instance, &numbers, &mut flat).walk(&scopes);
+    EquationFlattener::new(instance, &numbers, &mut flat).walk(&scopes);
     connections(instance, network, &numbers, &mut flat);
     overconstrained::equations(instance, network, &numbers, &mut flat);
     streams::equations(instance, network, &numbers, &mut flat);
@@ -45,8 +45,8 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     flat.exprs = std::mem::take(&mut instance.exprs);
     let mut diagnostics = std::mem::take(&mut instance.diagnostics);
     if !diagnostics.iter().any(Diagnostic::is_error) {
-        let census = Census::take(instance, network, &flat, &scopes, &constraints);
-        let signals = ports::Signals::new(instance, network, &flat, &census, &scopes);
+        let census = BalanceCensus::take(instance, network, &flat, &scopes, &constraints);
+        let signals = ports::SignalConnections::new(instance, network, &flat, &census, &scopes);
         let doubts = balance::doubts(instance, &signals, &flat, &census, &scopes);
         diagnostics.extend(ports::open_lines(&flat, &census));
         diagnostics.extend(ports::uneven(instance, &flat, &census, &scopes));
@@ -57,20 +57,20 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> Checked<Fl
     if !flat.exprs.functions.is_empty() {
         flat.compact();
     }
-    Checked::new(flat, diagnostics)
+    StageResult::new(flat, diagnostics)
 }
 
 fn class_name(instance: &Instance<'_, '_>, scope: ScopeId) -> String {
     instance.library.full_name(instance.scope(scope).template.class)
 }
 
-fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &Numbers) -> InstanceInfo {
+fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &ComponentNumbers) -> InstanceInfo {
     let s = instance.scope(scope);
     let parent = s.owner.map_or(0, |owner| numbers.of(owner));
     InstanceInfo { name: s.name.clone(), class: class_name(instance, scope), parent, span: s.span }
 }
 
-fn variables(instance: &mut Instance<'_, '_>, numbers: &Numbers, flat: &mut FlatModel) {
+fn variables(instance: &mut Instance<'_, '_>, numbers: &ComponentNumbers, flat: &mut FlatModel) {
     flat.variables.reserve_exact(instance.order.len());
     for k in 0..instance.order.len() {
         let i = instance.order[k];
@@ -79,12 +79,12 @@ fn variables(instance: &mut Instance<'_, '_>, numbers: &Numbers, flat: &mut Flat
     }
 }
 
-fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &Numbers, flat: &mut FlatModel) -> Variable {
+fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &ComponentNumbers, flat: &mut FlatModel) -> FlatVariable {
     let data = &instance.variables[i as usize];
-    let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::Declared };
-    let input = data.top && data.causality == Some(ast::Causality::Input);
-    let output = data.top && data.causality == Some(ast::Causality::Output);
-    let mut v = Variable {
+    let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::Declared };
+    let input = data.top && data.causality == Some(ast::CausalityPrefix::Input);
+    let output = data.top && data.causality == Some(ast::CausalityPrefix::Output);
+    let mut v = FlatVariable {
         input,
         output,
         flow: data.flow,
@@ -93,8 +93,8 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &Numbers, flat: &m
         unwanted: data.unwanted,
         fixed: data.variability <= Variability::Parameter,
         description: data.description.map(Into::into),
-        state_select: if data.ty == Type::Real { data.state_select } else { StateSelect::Default },
-        ..Variable::plain(data.name.clone(), data.ty, data.variability, origin)
+        state_select: if data.ty == ScalarType::Real { data.state_select } else { StateSelect::Default },
+        ..FlatVariable::plain(data.name.clone(), data.ty, data.variability, origin)
     };
     attributes(instance, i, &mut v);
     binding(instance, i, &mut v, flat);
@@ -103,11 +103,11 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &Numbers, flat: &m
 
 /// In K, degC, ...
 fn is_temperature(unit: &str) -> bool {
-    let parse = bramah_expr::units::Unit::parse;
+    let parse = bramah_expr::units::MeasurementUnit::parse;
     matches!((parse(unit), parse("K")), (Ok(unit), Ok(kelvin)) if unit.dimension == kelvin.dimension)
 }
 
-fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
+fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
     for k in 0..instance.variables[i as usize].attributes.len() {
         let (name, b) = instance.variables[i as usize].attributes[k].clone();
         match name.as_str() {
@@ -124,13 +124,13 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
                 instance.parameters().text_attribute(i, "quantity");
             }
             "fixed" => {
-                if let Some(x) = instance.parameters().known_attribute(i, name, &b, Type::Boolean) {
+                if let Some(x) = instance.parameters().known_attribute(i, name, &b, ScalarType::Boolean) {
                     v.fixed = x != 0.0;
                     v.confidence.free = x == 0.0;
                 }
             }
             "unbounded" => {
-                instance.parameters().known_attribute(i, name, &b, Type::Boolean);
+                instance.parameters().known_attribute(i, name, &b, ScalarType::Boolean);
             }
             "start" | "min" | "max" | "nominal" => {
                 let Some(value) = instance.parameters().bound(i, &b, false) else { continue };
@@ -153,7 +153,7 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
                     "start" => {
                         v.start = e;
                         let (depth, reach) = given(instance, i, b.view.scope, e);
-                        v.confidence = Confidence { depth, reach, ..v.confidence };
+                        v.confidence = StartValueConfidence { depth, reach, ..v.confidence };
                     }
                     "min" => v.min = e,
                     "max" => v.max = e,
@@ -188,13 +188,13 @@ fn given(instance: &Instance<'_, '_>, variable: u32, written: ScopeId, start: Op
 const LONGEST_CHAIN: usize = 30;
 
 /// The parameter that a binding consists of.
-fn lone_parameter(instance: &Instance<'_, '_>, view: View, expr: &ast::Expr) -> Option<VarId> {
+fn lone_parameter(instance: &Instance<'_, '_>, view: LookupContext, expr: &ast::Expr) -> Option<VarId> {
     let ast::ExprKind::Reference(r) = &expr.kind else { return None };
     let [part] = r.parts.as_slice() else { return None };
     let scope = instance.scope(view.scope);
     let &index = scope.template.by_name.get(&part.name.name)?;
     let ElementState::Node(node) = scope.elements[index as usize] else { return None };
-    let Node::Var(v) = instance.node(node) else { return None };
+    let InstanceNode::Var(v) = instance.node(node) else { return None };
     Some(instance.variables[*v as usize].id)
 }
 
@@ -211,7 +211,7 @@ fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
 
 /// Bindings of parameters stay with the variable; bindings of other variables are equations. That of a stream is what leaves
 /// through the port of a component that says nothing else: it gives way to parts that are joined to the port.
-fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut FlatModel) {
+fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: &mut FlatModel) {
     let parameter = v.variability <= Variability::Parameter;
     if instance.streams.outside.contains(&i) {
         return;
@@ -262,12 +262,12 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable, flat: &mut
     }
     let id = instance.variables[i as usize].id;
     let lhs = instance.exprs.var(id);
-    let origin = Origin { span: b.expr.span, kind: OriginKind::Binding, ..v.origin };
-    flat.equations.push(Equation { lhs, rhs: e, origin });
+    let origin = ElementOrigin { span: b.expr.span, kind: OriginKind::Binding, ..v.origin };
+    flat.equations.push(FlatEquation { lhs, rhs: e, origin });
 }
 
 /// A parameter without a value takes its start value, with no remark if that was given on purpose (MLS 8.6).
-fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
+fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
     if v.start.is_some() {
         v.binding = v.start;
         return;
@@ -287,14 +287,14 @@ fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut Variable) {
 }
 
 /// Connection equations: potentials equal, flows summed, open flows zero (MLS 9.2).
-fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Numbers, flat: &mut FlatModel) {
+fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &ComponentNumbers, flat: &mut FlatModel) {
     for set in &network.potentials {
         let first = instance.variables[set.members[0].0 as usize].id;
         let lhs = instance.exprs.var(first);
         for &(i, span) in &set.members[1..] {
             let rhs = instance.exprs.var(instance.variables[i as usize].id);
-            let origin = Origin { span, instance: numbers.of(set.scope), kind: OriginKind::ConnectPotential };
-            flat.equations.push(Equation { lhs, rhs, origin });
+            let origin = ElementOrigin { span, instance: numbers.of(set.scope), kind: OriginKind::ConnectPotential };
+            flat.equations.push(FlatEquation { lhs, rhs, origin });
         }
     }
     for set in &network.flows {
@@ -308,27 +308,27 @@ fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Num
                 (Some(s), true) => instance.exprs.sub(s, e),
             });
         }
-        let origin = Origin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectFlow };
-        flat.equations.push(Equation { lhs: sum.unwrap_or(Exprs::ZERO), rhs: Exprs::ZERO, origin });
+        let origin = ElementOrigin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectFlow };
+        flat.equations.push(FlatEquation { lhs: sum.unwrap_or(Exprs::ZERO), rhs: Exprs::ZERO, origin });
     }
     for &i in &network.unused {
         let data = &instance.variables[i as usize];
-        let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
+        let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
         let lhs = instance.exprs.var(data.id);
-        flat.equations.push(Equation { lhs, rhs: Exprs::ZERO, origin });
+        flat.equations.push(FlatEquation { lhs, rhs: Exprs::ZERO, origin });
     }
     for &i in &network.open {
         let data = &instance.variables[i as usize];
-        let origin = Origin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
+        let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
         let lhs = instance.exprs.var(data.id);
-        flat.equations.push(Equation { lhs, rhs: Exprs::ZERO, origin });
+        flat.equations.push(FlatEquation { lhs, rhs: Exprs::ZERO, origin });
     }
 }
 
 /// The `experiment` annotation of the model or of a class it extends.
-fn experiment(instance: &mut Instance<'_, '_>) -> Experiment {
+fn experiment(instance: &mut Instance<'_, '_>) -> ExperimentAnnotation {
     let template = instance.scope(instance.root).template.clone();
-    let mut experiment = Experiment::default();
+    let mut experiment = ExperimentAnnotation::default();
     for base in &template.bases {
         if !matches!(base.ast.body, ClassBody::Long(_) | ClassBody::Short { .. }) {
             continue;
@@ -348,7 +348,7 @@ fn experiment(instance: &mut Instance<'_, '_>) -> Experiment {
 fn argument<'m>(m: &'m Modification, name: &str) -> Option<&'m Modification> {
     let wanted = Symbol::new(name);
     m.arguments.iter().find_map(|a| match &a.kind {
-        ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == wanted => Some(m),
+        ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == wanted => Some(m),
         _ => None,
     })
 }

@@ -16,9 +16,9 @@ mod streams;
 pub use explain::explain;
 pub use flatten::flatten;
 
-pub use bramah_expr::types::{MessagePart, StateSelect, Type, Variability};
+pub use bramah_expr::types::{MessagePart, ScalarType, StateSelect, Variability};
 
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::diag::{Diagnostic, Span};
 
 /// The flattened circuit.
@@ -29,17 +29,17 @@ pub struct FlatModel {
     /// All expressions.
     pub exprs: Exprs,
     /// All scalar variables in declaration order; `VarId` indexes here.
-    pub variables: Vec<Variable>,
+    pub variables: Vec<FlatVariable>,
     /// Equations of the `equation` sections, bindings of variables, connection equations.
-    pub equations: Vec<Equation>,
-    /// Equations of the `initial equation` sections. `fixed` starts are not listed here: see [`Variable::fixed`].
-    pub initial_equations: Vec<Equation>,
+    pub equations: Vec<FlatEquation>,
+    /// Equations of the `initial equation` sections. `fixed` starts are not listed here: see [`FlatVariable::fixed`].
+    pub initial_equations: Vec<FlatEquation>,
     /// `when` clauses (also those of algorithms, already made single assignments).
-    pub whens: Vec<When>,
+    pub whens: Vec<WhenClause>,
     /// `assert`s outside `when`.
-    pub asserts: Vec<Assert>,
+    pub asserts: Vec<FlatAssertion>,
     /// Statements `Connections.conserved(..)`.
-    pub conserved: Vec<Conserved>,
+    pub conserved: Vec<ConservationDeclaration>,
     /// Component instances, parents before children; entry 0 is the model itself with an empty name.
     pub instances: Vec<InstanceInfo>,
     /// What seems wrong with signals or with the balance of single components: reported when the equations turn out not to
@@ -48,7 +48,7 @@ pub struct FlatModel {
     /// Enumeration types: full name and literals.
     pub enumerations: Vec<(String, Vec<String>)>,
     /// The model's `experiment` annotation.
-    pub experiment: Experiment,
+    pub experiment: ExperimentAnnotation,
     /// Parameters get other values without compiling again: none that is 0 may be fixed with the structure for that.
     pub varied: bool,
 }
@@ -60,7 +60,7 @@ impl FlatModel {
         let reads = |e: ExprId| {
             let variables = self.exprs.variables(e);
             variables.iter().any(|w| self.variables[w.index()].variability == Variability::Parameter)
-                || matches!(self.exprs.node(e), Node::Time)
+                || matches!(self.exprs.node(e), ExprNode::Time)
         };
         variable.variability == Variability::Parameter && !variable.binding.is_some_and(reads)
     }
@@ -69,7 +69,7 @@ impl FlatModel {
 /// `annotation(experiment(...))`; `None` where nothing is said.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[allow(missing_docs, reason = "the names of the annotation, in SI units")]
-pub struct Experiment {
+pub struct ExperimentAnnotation {
     pub start_time: Option<f64>,
     pub stop_time: Option<f64>,
     pub interval: Option<f64>,
@@ -91,7 +91,7 @@ pub struct InstanceInfo {
 
 /// Where a variable or equation comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Origin {
+pub struct ElementOrigin {
     /// The place in the text.
     pub span: Span,
     /// The instance that holds it: index into `FlatModel::instances`.
@@ -129,11 +129,11 @@ pub enum OriginKind {
 
 /// A scalar variable.
 #[derive(Clone, Debug)]
-pub struct Variable {
+pub struct FlatVariable {
     /// Full dotted name with indices, as in `pump.b.p` or `v[3].p`.
     pub name: String,
     /// Its type.
-    pub ty: Type,
+    pub ty: ScalarType,
     /// When it may change.
     pub variability: Variability,
     /// A top-level `input`: its value comes from outside. Its binding, if any, is the default.
@@ -153,7 +153,7 @@ pub struct Variable {
     /// `start`: a parameter expression. `None` when not given (0 or `false`, first literal).
     pub start: Option<ExprId>,
     /// How much `start` counts beside the starts of others, where not all can hold.
-    pub confidence: Confidence,
+    pub confidence: StartValueConfidence,
     /// `fixed`: the start value holds at the beginning of the run (for parameters: false means found at initialization).
     pub fixed: bool,
     /// `min`
@@ -173,14 +173,14 @@ pub struct Variable {
     /// `stateSelect`
     pub state_select: StateSelect,
     /// Where it was declared.
-    pub origin: Origin,
+    pub origin: ElementOrigin,
 }
 
 /// Who gave a start value that is not `fixed`: of two for one quantity the one given further outside counts (the
 /// confidence numbers of MLS 8.6.2), and of two given equally far outside the one that reaches further in. Less is more
 /// confident.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Confidence {
+pub struct StartValueConfidence {
     /// `fixed = false` was written: the start of any other goes first.
     pub free: bool,
     /// Components around the place where the value was written; 0 in the model itself.
@@ -189,7 +189,7 @@ pub struct Confidence {
     pub reach: i32,
 }
 
-impl Confidence {
+impl StartValueConfidence {
     /// Whether the model itself says how one of its components starts.
     pub fn is_said(&self) -> bool {
         !self.free && self.depth == 0 && self.reach < 0
@@ -201,22 +201,22 @@ impl Confidence {
     }
 }
 
-impl Default for Confidence {
+impl Default for StartValueConfidence {
     /// Of a variable without a start.
     fn default() -> Self {
-        Confidence { free: false, depth: u32::MAX, reach: 0 }
+        StartValueConfidence { free: false, depth: u32::MAX, reach: 0 }
     }
 }
 
-impl Variable {
+impl FlatVariable {
     /// Whether its start is a condition: `fixed`, or said by the model of one of its components.
     pub fn start_is_said(&self) -> bool {
         self.fixed || self.start.is_some() && self.confidence.is_said()
     }
 
     /// A variable of which nothing is said but this: no attributes, visible, not fixed.
-    pub fn plain(name: impl Into<String>, ty: Type, variability: Variability, origin: Origin) -> Self {
-        Variable {
+    pub fn plain(name: impl Into<String>, ty: ScalarType, variability: Variability, origin: ElementOrigin) -> Self {
+        FlatVariable {
             name: name.into(),
             ty,
             variability,
@@ -228,7 +228,7 @@ impl Variable {
             unwanted: false,
             binding: None,
             start: None,
-            confidence: Confidence::default(),
+            confidence: StartValueConfidence::default(),
             fixed: false,
             min: None,
             max: None,
@@ -248,25 +248,25 @@ impl Variable {
 /// If the left side is a lone discrete-valued variable (Boolean, Integer, enumeration, or `discrete Real`), or both
 /// sides are discrete, this is a discrete equation, active at events; else a continuous one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Equation {
+pub struct FlatEquation {
     /// Left side.
     pub lhs: ExprId,
     /// Right side.
     pub rhs: ExprId,
     /// Where it comes from.
-    pub origin: Origin,
+    pub origin: ElementOrigin,
 }
 
 /// `when c1 then ... elsewhen c2 then ... end when`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct When {
+pub struct WhenClause {
     /// The branches in order of priority.
     pub branches: Vec<WhenBranch>,
     /// Where it comes from.
-    pub origin: Origin,
+    pub origin: ElementOrigin,
 }
 
-impl When {
+impl WhenClause {
     /// The variables that its branches assign.
     pub fn assigned(&self) -> impl Iterator<Item = VarId> {
         self.branches.iter().flat_map(|b| &b.actions).filter_map(|a| match a {
@@ -279,7 +279,7 @@ impl When {
 /// One branch of a `when`. `when {c1, c2}` has several conditions: it fires when any of them becomes true.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WhenBranch {
-    /// Conditions; `Node::Initial` stands for `initial()`.
+    /// Conditions; `ExprNode::Initial` stands for `initial()`.
     pub conditions: Vec<ExprId>,
     /// What is done.
     pub actions: Vec<WhenAction>,
@@ -295,7 +295,7 @@ pub enum WhenAction {
         /// Its new value.
         value: ExprId,
         /// Where it stands.
-        origin: Origin,
+        origin: ElementOrigin,
     },
     /// `reinit(x, value)`
     Reinit {
@@ -306,25 +306,25 @@ pub enum WhenAction {
         /// 1 unless it stood in an `if`.
         guard: ExprId,
         /// Where it stands.
-        origin: Origin,
+        origin: ElementOrigin,
     },
     /// `assert(condition, message, level)`
-    Assert(Assert),
+    Assert(FlatAssertion),
     /// `terminate(message)`
     Terminate {
         /// The message.
-        message: Message,
+        message: MessageTemplate,
         /// 1 unless it stood in an `if`.
         guard: ExprId,
         /// Where it stands.
-        origin: Origin,
+        origin: ElementOrigin,
     },
 }
 
 /// `Connections.conserved(quantity, rate, state)`: what the equations imply, said so that the solver can integrate the
 /// quantity and let the state follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conserved {
+pub struct ConservationDeclaration {
     /// What changes by its rate alone: an expression of states.
     pub quantity: ExprId,
     /// Its rate.
@@ -332,25 +332,25 @@ pub struct Conserved {
     /// The variable that follows from it.
     pub state: ExprId,
     /// Where it is stated.
-    pub origin: Origin,
+    pub origin: ElementOrigin,
 }
 
 /// `assert(condition, message, level)`
 #[derive(Clone, Debug, PartialEq)]
-pub struct Assert {
+pub struct FlatAssertion {
     /// Must hold.
     pub condition: ExprId,
     /// What to say otherwise.
-    pub message: Message,
+    pub message: MessageTemplate,
     /// True for `AssertionLevel.warning`.
     pub warning: bool,
     /// Where it stands.
-    pub origin: Origin,
+    pub origin: ElementOrigin,
 }
 
 /// A text with values in it, `"p = " + String(p)`.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Message {
+pub struct MessageTemplate {
     /// The pieces in order.
     pub parts: Vec<MessagePart>,
 }

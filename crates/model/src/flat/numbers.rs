@@ -3,17 +3,17 @@
 use crate::instance::ScopeId;
 
 /// The numbers of components, by their scopes.
-pub(super) struct Numbers(Vec<u32>);
+pub(super) struct ComponentNumbers(Vec<u32>);
 
-impl Numbers {
+impl ComponentNumbers {
     /// Components are numbered in the order of their scopes.
-    pub(super) fn new(scopes: &[ScopeId]) -> Numbers {
+    pub(super) fn new(scopes: &[ScopeId]) -> ComponentNumbers {
         let places = scopes.iter().map(|s| s.0 as usize + 1).max().unwrap_or(0);
         let mut all = vec![0; places];
         for (&scope, i) in scopes.iter().zip(0u32..) {
             all[scope.0 as usize] = i;
         }
-        Numbers(all)
+        ComponentNumbers(all)
     }
 
     /// The component of a scope; 0, the model itself, for what is none.

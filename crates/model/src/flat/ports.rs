@@ -1,12 +1,12 @@
 //! Ports that nothing is connected to, inputs without a value, and signals with two sources.
 
-use super::census::{Census, Groups, Role};
-use super::numbers::Numbers;
+use super::census::{BalanceCensus, BalanceRole, VariableGroups};
+use super::numbers::ComponentNumbers;
 use super::{FlatModel, OriginKind};
 use crate::instance::{Instance, ScopeId};
 use crate::network::Network;
 use bramah_expr::VarId;
-use bramah_expr::units::Unit;
+use bramah_expr::units::MeasurementUnit;
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 pub(super) fn uneven(
     instance: &Instance<'_, '_>,
     flat: &FlatModel,
-    census: &Census,
+    census: &BalanceCensus,
     scopes: &[ScopeId],
 ) -> Vec<Diagnostic> {
     let mut reported: FxHashSet<&str> = FxHashSet::default();
@@ -43,12 +43,12 @@ pub(super) fn uneven(
 
 /// Hydraulic ports of components that are not connected. In other domains an open port means something: a free shaft, no
 /// heat, no current. An open hydraulic port would spill oil; whoever means a closed one says so by a plug.
-pub(super) fn open_lines(flat: &FlatModel, census: &Census) -> Vec<Diagnostic> {
+pub(super) fn open_lines(flat: &FlatModel, census: &BalanceCensus) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for e in flat.equations.iter().filter(|e| e.origin.kind == OriginKind::OpenPort) {
         let Some(v) = super::census::as_variable(flat, e.lhs) else { continue };
         let holder = census.holder[v.index()];
-        if holder != 0 && census.role[v.index()] == Role::Flow && is_volume_flow(flat, v) {
+        if holder != 0 && census.role[v.index()] == BalanceRole::Flow && is_volume_flow(flat, v) {
             found.push(open_port(flat, v, holder));
         }
     }
@@ -56,8 +56,8 @@ pub(super) fn open_lines(flat: &FlatModel, census: &Census) -> Vec<Diagnostic> {
 }
 
 fn is_volume_flow(flat: &FlatModel, v: VarId) -> bool {
-    let unit = flat.variables[v.index()].unit.as_deref().and_then(|u| Unit::parse(u).ok());
-    let volume_flow = Unit::parse("m3/s").expect("a unit");
+    let unit = flat.variables[v.index()].unit.as_deref().and_then(|u| MeasurementUnit::parse(u).ok());
+    let volume_flow = MeasurementUnit::parse("m3/s").expect("a unit");
     unit.is_some_and(|u| u.dimension == volume_flow.dimension)
 }
 
@@ -80,9 +80,9 @@ fn open_port(flat: &FlatModel, flow: VarId, component: u32) -> Diagnostic {
 }
 
 /// The signals joined at each level.
-pub(super) struct Signals<'s> {
+pub(super) struct SignalConnections<'s> {
     flat: &'s FlatModel,
-    census: &'s Census,
+    census: &'s BalanceCensus,
     /// Members of each group with the `connect` that brought them; the key is the level and the first variable.
     groups: BTreeMap<(u32, u32), Vec<(VarId, Span)>>,
     /// The group, if any, that supplies an input of a component.
@@ -91,16 +91,16 @@ pub(super) struct Signals<'s> {
     mentioned: FxHashSet<VarId>,
 }
 
-impl<'s> Signals<'s> {
+impl<'s> SignalConnections<'s> {
     pub(super) fn new(
         instance: &Instance<'_, '_>,
         network: &Network,
         flat: &'s FlatModel,
-        census: &'s Census,
+        census: &'s BalanceCensus,
         scopes: &[ScopeId],
     ) -> Self {
-        let numbers = Numbers::new(scopes);
-        let mut sets = Groups::default();
+        let numbers = ComponentNumbers::new(scopes);
+        let mut sets = VariableGroups::default();
         let mut members: Vec<((u32, u32), Span)> = Vec::new();
         let mut seen: FxHashSet<(u32, u32)> = FxHashSet::default();
         for pair in &network.signals {
@@ -122,7 +122,7 @@ impl<'s> Signals<'s> {
             }
             groups.entry(group).or_default().push((v, span));
         }
-        Signals { flat, census, groups, outer, mentioned: mentioned(flat, census) }
+        SignalConnections { flat, census, groups, outer, mentioned: mentioned(flat, census) }
     }
 
     /// Signals that cannot work: inputs without a value, or with two.
@@ -134,7 +134,7 @@ impl<'s> Signals<'s> {
 
     /// Outputs of blocks that `connect` joins, which is wrong whatever the equations say (MLS 9.3).
     pub(super) fn joined_outputs(&self) -> Vec<Diagnostic> {
-        let causal = |v: VarId| matches!(self.census.role[v.index()], Role::Input | Role::Own);
+        let causal = |v: VarId| matches!(self.census.role[v.index()], BalanceRole::Input | BalanceRole::Own);
         self.two_sources(|members| members.iter().all(|(v, _)| causal(*v)))
     }
 
@@ -147,9 +147,9 @@ impl<'s> Signals<'s> {
     fn is_source(&self, level: u32, v: VarId) -> bool {
         let outside = self.census.holder[v.index()] == level;
         match self.census.role[v.index()] {
-            Role::Input => outside,
-            Role::Own => !outside,
-            Role::Fixed | Role::Potential | Role::Flow => true,
+            BalanceRole::Input => outside,
+            BalanceRole::Own => !outside,
+            BalanceRole::Fixed | BalanceRole::Potential | BalanceRole::Flow => true,
         }
     }
 
@@ -179,7 +179,11 @@ impl<'s> Signals<'s> {
         for (i, role) in (0u32..).zip(&self.census.role) {
             let v = VarId(i);
             let holder = self.census.holder[v.index()];
-            if *role != Role::Input || holder == 0 || self.census.bound.contains(&v) || self.mentioned.contains(&v) {
+            if *role != BalanceRole::Input
+                || holder == 0
+                || self.census.bound.contains(&v)
+                || self.mentioned.contains(&v)
+            {
                 continue;
             }
             let group = self.outer.get(&v);
@@ -189,7 +193,7 @@ impl<'s> Signals<'s> {
                     self.is_source(group.0, *m)
                         || self.mentioned.contains(m)
                         || self.census.bound.contains(m)
-                        || self.census.role[m.index()] == Role::Own
+                        || self.census.role[m.index()] == BalanceRole::Own
                 });
                 if fed || !reported.insert(*group) {
                     continue;
@@ -218,9 +222,9 @@ impl<'s> Signals<'s> {
 }
 
 /// Variables that an equation outside their own component speaks of.
-fn mentioned(flat: &FlatModel, census: &Census) -> FxHashSet<VarId> {
+fn mentioned(flat: &FlatModel, census: &BalanceCensus) -> FxHashSet<VarId> {
     let mut found = FxHashSet::default();
-    let inputs = census.role.iter().zip(&census.holder).any(|(r, h)| *r == Role::Input && *h != 0);
+    let inputs = census.role.iter().zip(&census.holder).any(|(r, h)| *r == BalanceRole::Input && *h != 0);
     if !inputs {
         return found;
     }

@@ -1,6 +1,9 @@
 //! The flat model as text, close to flat Modelica, for `check --emit flat` and for tests.
 
-use super::{Equation, FlatModel, Message, MessagePart, Type, Variability, Variable, When, WhenAction};
+use super::{
+    FlatEquation, FlatModel, FlatVariable, MessagePart, MessageTemplate, ScalarType, Variability, WhenAction,
+    WhenClause,
+};
 use bramah_expr::{ExprId, Exprs, VarId};
 use std::fmt::Write;
 
@@ -37,14 +40,14 @@ impl FlatModel {
         self.variables[v.index()].name.clone()
     }
 
-    fn section(&self, out: &mut String, title: &str, equations: &[Equation]) {
+    fn section(&self, out: &mut String, title: &str, equations: &[FlatEquation]) {
         let _ = writeln!(out, "{title}");
         for e in equations {
             let _ = writeln!(out, "  {} = {};", self.expr(e.lhs), self.expr(e.rhs));
         }
     }
 
-    fn declaration(&self, v: &Variable) -> String {
+    fn declaration(&self, v: &FlatVariable) -> String {
         let mut text = String::new();
         for (holds, word) in [(v.hidden, "protected "), (v.flow, "flow "), (v.input, "input "), (v.output, "output ")] {
             text.push_str(if holds { word } else { "" });
@@ -52,14 +55,14 @@ impl FlatModel {
         text.push_str(match (v.variability, v.ty) {
             (Variability::Constant, _) => "constant ",
             (Variability::Parameter, _) => "parameter ",
-            (Variability::Discrete, Type::Real) => "discrete ",
+            (Variability::Discrete, ScalarType::Real) => "discrete ",
             _ => "",
         });
         text.push_str(match v.ty {
-            Type::Real => "Real",
-            Type::Integer => "Integer",
-            Type::Boolean => "Boolean",
-            Type::Enumeration(e) => self.enumerations.get(e as usize).map_or("enumeration", |e| e.0.as_str()),
+            ScalarType::Real => "Real",
+            ScalarType::Integer => "Integer",
+            ScalarType::Boolean => "Boolean",
+            ScalarType::Enumeration(e) => self.enumerations.get(e as usize).map_or("enumeration", |e| e.0.as_str()),
         });
         let _ = write!(text, " {}", v.name);
         let modifiers = self.modifiers(v);
@@ -75,7 +78,7 @@ impl FlatModel {
         text + ";"
     }
 
-    fn modifiers(&self, v: &Variable) -> Vec<String> {
+    fn modifiers(&self, v: &FlatVariable) -> Vec<String> {
         let quoted = |name: &str, text: &Option<Box<str>>| text.as_ref().map(|t| format!("{name} = {t:?}"));
         let value = |name: &str, e: Option<ExprId>| e.map(|e| format!("{name} = {}", self.expr(e)));
         let all = [
@@ -90,7 +93,7 @@ impl FlatModel {
         all.into_iter().flatten().collect()
     }
 
-    fn when(&self, out: &mut String, when: &When) {
+    fn when(&self, out: &mut String, when: &WhenClause) {
         for (i, branch) in when.branches.iter().enumerate() {
             let conditions: Vec<String> = branch.conditions.iter().map(|&c| self.expr(c)).collect();
             let word = if i == 0 { "when" } else { "elsewhen" };
@@ -119,7 +122,7 @@ impl FlatModel {
         if guard == Exprs::ONE { action } else { format!("if {} then {action}; end if", self.expr(guard)) }
     }
 
-    fn message(&self, message: &Message) -> String {
+    fn message(&self, message: &MessageTemplate) -> String {
         let part = |part: &MessagePart| match part {
             MessagePart::Text(text) => format!("{text:?}"),
             MessagePart::Value(e, _) => format!("String({})", self.expr(*e)),

@@ -1,6 +1,6 @@
 //! Every expression of a flat model.
 
-use super::{Assert, FlatModel, MessagePart, WhenAction};
+use super::{FlatAssertion, FlatModel, MessagePart, WhenAction};
 use bramah_expr::ExprId;
 
 impl FlatModel {
@@ -41,7 +41,7 @@ fn action<'m>(a: &'m mut WhenAction, roots: &mut Vec<&'m mut ExprId>) {
     }
 }
 
-fn assert<'m>(a: &'m mut Assert, roots: &mut Vec<&'m mut ExprId>) {
+fn assert<'m>(a: &'m mut FlatAssertion, roots: &mut Vec<&'m mut ExprId>) {
     roots.push(&mut a.condition);
     parts(&mut a.message.parts, roots);
 }

@@ -1,11 +1,11 @@
 //! Stream variables: what a flow carries with it (MLS 15). What comes into a component is mixed from what the others of its
 //! connection set send out, each weighed by its flow.
 
-use super::{Equation, FlatModel, Origin, OriginKind};
-use crate::instance::{Instance, Junction, StreamMember};
+use super::{ElementOrigin, FlatEquation, FlatModel, OriginKind};
+use crate::instance::{Instance, MixingJunction, StreamMember};
 use crate::network::Network;
 
-use super::numbers::Numbers;
+use super::numbers::ComponentNumbers;
 use petgraph::unionfind::UnionFind;
 
 /// Tells the instance which stream variables are joined, so that `inStream` has a meaning in its equations.
@@ -46,7 +46,7 @@ fn junctions(instance: &mut Instance<'_, '_>) {
         let Some(mixer) = mixing.min() else { continue };
         others.retain(|m| m.variable != mixer);
         found[i] = Some(all.len());
-        all.push(Junction { mixer, others });
+        all.push(MixingJunction { mixer, others });
     }
     instance.streams.at = (0..found.len()).map(|i| found[nodes.find(i)]).collect();
     instance.streams.junctions = all;
@@ -54,7 +54,12 @@ fn junctions(instance: &mut Instance<'_, '_>) {
 
 /// What leaves through the ports of a component itself is the mixture of what its parts send there. Parts come before what
 /// holds them, so that numbers are passed on.
-pub(super) fn equations(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Numbers, flat: &mut FlatModel) {
+pub(super) fn equations(
+    instance: &mut Instance<'_, '_>,
+    network: &Network,
+    numbers: &ComponentNumbers,
+    flat: &mut FlatModel,
+) {
     let mut sets: Vec<_> = network.streams.iter().enumerate().collect();
     sets.sort_by_key(|(_, set)| std::cmp::Reverse(numbers.of(set.scope)));
     for (number, set) in sets {
@@ -66,8 +71,9 @@ pub(super) fn equations(instance: &mut Instance<'_, '_>, network: &Network, numb
                 None => instance.mixing().stream_mixture(&others, crate::instance::evaluation::streams::LEAST_MIXED),
             };
             instance.mixing().leaves_with(member.variable, rhs);
-            let origin = Origin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectPotential };
-            flat.equations.push(Equation { lhs, rhs, origin });
+            let origin =
+                ElementOrigin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectPotential };
+            flat.equations.push(FlatEquation { lhs, rhs, origin });
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Messages of this stage.
 
-use super::lookup::Builtin;
-use super::{Instance, ScopeId, View};
+use super::lookup::BuiltinType;
+use super::{Instance, LookupContext, ScopeId};
 use crate::resolve::{ClassId, nested_classes};
 use bramah_syntax::ast;
 use bramah_syntax::diag::{Code, Diagnostic, Label, Span};
@@ -70,7 +70,7 @@ impl<'a> Instance<'a, '_> {
         );
     }
 
-    pub(super) fn unknown_base(&mut self, path: &ast::Path, class: ClassId, parent: View) {
+    pub(super) fn unknown_base(&mut self, path: &ast::Path, class: ClassId, parent: LookupContext) {
         let part = self.names().lookup_path(parent, path).err().unwrap_or(0);
         if part == 0 && self.broken_import(parent, path.parts[0].name).is_some() {
             self.unknown_class_at(parent, path, part);
@@ -81,7 +81,7 @@ impl<'a> Instance<'a, '_> {
         self.unknown_class_message(path, part, &names);
     }
 
-    pub(super) fn unknown_class_at(&mut self, view: View, path: &ast::Path, part: usize) {
+    pub(super) fn unknown_class_at(&mut self, view: LookupContext, path: &ast::Path, part: usize) {
         if let Some(import) = self.broken_import(view, path.parts[0].name).filter(|_| part == 0) {
             let part = self.names().lookup_path(super::ROOT, &import).err().unwrap_or(0);
             self.unknown_class_at(super::ROOT, &import, part);
@@ -92,7 +92,7 @@ impl<'a> Instance<'a, '_> {
         } else {
             let shorter = ast::Path { global: path.global, parts: path.parts[..part].to_vec(), span: path.span };
             match self.names().lookup_path(view, &shorter) {
-                Ok(super::lookup::Found::Class(c)) => {
+                Ok(super::lookup::LookupResult::Class(c)) => {
                     let nested = nested_classes(self.library.class(c.class)).map(|n| n.name.name);
                     nested.chain(self.library.folder_members(c.class)).collect()
                 }
@@ -103,7 +103,7 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The import that should have brought a name, where its own path leads nowhere.
-    fn broken_import(&mut self, mut view: View, name: Symbol) -> Option<ast::Path> {
+    fn broken_import(&mut self, mut view: LookupContext, name: Symbol) -> Option<ast::Path> {
         while view.scope != super::ROOT.scope {
             let template = self.scope(view.scope).template.clone();
             let base = template.bases.get(view.base as usize)?;
@@ -155,7 +155,7 @@ impl<'a> Instance<'a, '_> {
         names
     }
 
-    fn class_names_at(&mut self, view: View) -> Vec<Symbol> {
+    fn class_names_at(&mut self, view: LookupContext) -> Vec<Symbol> {
         let template = self.scope(view.scope).template.clone();
         match template.bases.get(view.base as usize) {
             Some(base) => self.class_names_around(base.class),
@@ -187,7 +187,7 @@ impl<'a> Instance<'a, '_> {
         );
     }
 
-    pub(super) fn unknown_attribute(&mut self, name: Symbol, span: Span, builtin: Builtin) {
+    pub(super) fn unknown_attribute(&mut self, name: Symbol, span: Span, builtin: BuiltinType) {
         let known = super::components::attributes_of(builtin);
         let ty = builtin_name(builtin);
         let mut d =
@@ -208,14 +208,14 @@ impl<'a> Instance<'a, '_> {
 }
 
 /// The Modelica name of a built-in type.
-pub fn builtin_name(b: Builtin) -> &'static str {
+pub fn builtin_name(b: BuiltinType) -> &'static str {
     match b {
-        Builtin::Real => "Real",
-        Builtin::Integer => "Integer",
-        Builtin::Boolean => "Boolean",
-        Builtin::String => "String",
-        Builtin::Object => "ExternalObject",
-        Builtin::Enumeration(_) => "enumeration",
+        BuiltinType::Real => "Real",
+        BuiltinType::Integer => "Integer",
+        BuiltinType::Boolean => "Boolean",
+        BuiltinType::String => "String",
+        BuiltinType::Object => "ExternalObject",
+        BuiltinType::Enumeration(_) => "enumeration",
     }
 }
 

@@ -25,23 +25,23 @@ pub use views::{
 };
 
 use crate::resolve::{ClassId, Library};
-use bramah_expr::types::{StateSelect, Type, Variability};
+use bramah_expr::types::{ScalarType, StateSelect, Variability};
 use bramah_expr::{ExprId, Exprs, VarId};
-use bramah_results::table::Matrix;
+use bramah_results::table::TableMatrix;
 use bramah_syntax::ast;
 use bramah_syntax::diag::{Diagnostic, FileId, Span};
 use bramah_syntax::symbol::Symbol;
-use modifiers::{Arg, Binding};
+use modifiers::{Binding, Modifier};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 use template::Template;
-use value::Val;
+use value::ModelicaValue;
 
 /// Index of a [`Scope`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ScopeId(pub u32);
 
-/// Index of a [`Node`].
+/// Index of a [`InstanceNode`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct NodeId(pub u32);
 
@@ -50,7 +50,7 @@ pub struct NodeId(pub u32);
 /// Base 0 is the instance's own class; the others are the classes it extends. A name written in a base class means an
 /// element of the instance if that base knows it, else something around the base class.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct View {
+pub struct LookupContext {
     /// The instance.
     pub scope: ScopeId,
     /// The base class: index into `Template::bases`.
@@ -58,7 +58,7 @@ pub struct View {
 }
 
 /// The scope of top-level names.
-pub const ROOT: View = View { scope: ScopeId(0), base: 0 };
+pub const ROOT: LookupContext = LookupContext { scope: ScopeId(0), base: 0 };
 
 /// A class as found by name: the text, where it stands, and what modifies it.
 #[derive(Clone)]
@@ -66,9 +66,9 @@ pub struct ClassRef<'a> {
     /// The class.
     pub class: ClassId,
     /// Where names in it are looked up after its own elements.
-    pub parent: View,
+    pub parent: LookupContext,
     /// Modifications, outermost first (of a redeclared or replaceable class).
-    pub args: Rc<[Arg<'a>]>,
+    pub args: Rc<[Modifier<'a>]>,
 }
 
 /// An instance of a class: a component, a package or a function's body.
@@ -78,7 +78,7 @@ pub struct Scope<'a> {
     /// Full dotted name of the component, class name of a package.
     pub name: String,
     /// Modifications of elements, outermost first.
-    pub args: Rc<[Arg<'a>]>,
+    pub args: Rc<[Modifier<'a>]>,
     /// Value of the whole instance, for records.
     pub binding: Option<Binding<'a>>,
     /// The instance it is a component of.
@@ -86,7 +86,7 @@ pub struct Scope<'a> {
     /// The state of each element.
     pub elements: Vec<ElementState<'a>>,
     /// Inherited prefixes.
-    pub prefix: Inherited,
+    pub prefix: InheritedPrefixes,
     /// Where the component is declared.
     pub span: Span,
     /// True for component instances, false for packages and functions.
@@ -110,7 +110,7 @@ pub enum ElementState<'a> {
 
 /// A component, an array of components, or a scalar variable.
 #[derive(Clone, Debug)]
-pub enum Node {
+pub enum InstanceNode {
     /// A scalar variable: index into `Instance::variables`.
     Var(u32),
     /// An instance of a class.
@@ -120,7 +120,7 @@ pub enum Node {
         /// Sizes.
         dims: Vec<usize>,
         /// What counts along each dimension: Integers, truth values or the literals of an enumeration.
-        by: Rc<[Type]>,
+        by: Rc<[ScalarType]>,
         /// Elements.
         elements: Rc<[NodeId]>,
     },
@@ -128,11 +128,11 @@ pub enum Node {
 
 /// Prefixes that a component passes on to its elements.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Inherited {
+pub struct InheritedPrefixes {
     /// parameter, constant, discrete
-    pub variability: Option<ast::Variability>,
+    pub variability: Option<ast::VariabilityPrefix>,
     /// input, output
-    pub causality: Option<ast::Causality>,
+    pub causality: Option<ast::CausalityPrefix>,
     /// flow
     pub flow: bool,
     /// stream
@@ -148,11 +148,11 @@ pub struct Inherited {
 }
 
 /// A scalar variable with its attributes as written.
-pub struct VarData<'a> {
+pub struct InstanceVariable<'a> {
     /// Full name.
     pub name: String,
     /// Type.
-    pub ty: Type,
+    pub ty: ScalarType,
     /// True for String parameters, which have no place in the flat model.
     pub string: bool,
     /// True for external objects, which have none either.
@@ -160,7 +160,7 @@ pub struct VarData<'a> {
     /// Declared variability; `Continuous` when nothing is said.
     pub variability: Variability,
     /// input, output
-    pub causality: Option<ast::Causality>,
+    pub causality: Option<ast::CausalityPrefix>,
     /// A top-level input or output.
     pub top: bool,
     /// `flow`
@@ -192,7 +192,7 @@ pub struct VarData<'a> {
     /// The instance that holds it.
     pub scope: ScopeId,
     /// Value as far as it had to be known.
-    pub constant: Option<Result<Val, ()>>,
+    pub constant: Option<Result<ModelicaValue, ()>>,
     /// Being evaluated.
     pub busy: bool,
     /// Number in the flat model, given after the tree is complete.
@@ -212,7 +212,7 @@ pub struct StreamMember {
 
 /// Joined stream variables, known once the network is.
 #[derive(Default)]
-pub struct Streams {
+pub struct StreamConnections {
     /// The connection sets.
     pub sets: Vec<Vec<StreamMember>>,
     /// The set in which a variable is a part's port.
@@ -224,19 +224,19 @@ pub struct Streams {
     /// For each set the one of `junctions` at whose node it lies.
     pub at: Vec<Option<usize>>,
     /// Nodes with a component through which passes what flows there.
-    pub junctions: Vec<Junction>,
+    pub junctions: Vec<MixingJunction>,
 }
 
-impl Streams {
+impl StreamConnections {
     /// The junction at whose node a connection set lies.
-    pub fn junction(&self, set: usize) -> Option<&Junction> {
+    pub fn junction(&self, set: usize) -> Option<&MixingJunction> {
         self.at[set].map(|at| &self.junctions[at])
     }
 }
 
 /// A node of which one component takes in all that comes, and gives all that leaves.
 #[derive(Clone, Debug)]
-pub struct Junction {
+pub struct MixingJunction {
     /// The stream of that component.
     pub mixer: u32,
     /// The ports of all other components at the node.
@@ -245,7 +245,7 @@ pub struct Junction {
 
 /// An enumeration type.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Enumeration {
+pub struct EnumerationDefinition {
     /// Full name.
     pub name: String,
     /// Literals.
@@ -259,26 +259,26 @@ pub struct Instance<'a, 'l> {
     /// Instances; 0 is the scope of top-level names, 1 the model.
     pub scopes: Vec<Scope<'a>>,
     /// Components.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<InstanceNode>,
     /// Scalar variables in the order in which they were met.
-    pub variables: Vec<VarData<'a>>,
+    pub variables: Vec<InstanceVariable<'a>>,
     /// Variables in declaration order: `VarId` -> index into `variables`.
     pub order: Vec<u32>,
     /// All expressions.
     pub exprs: Exprs,
     /// Enumeration types.
-    pub enumerations: Vec<Enumeration>,
+    pub enumerations: Vec<EnumerationDefinition>,
     enumeration_index: FxHashMap<ClassId, u32>,
     /// The model itself.
     pub root: ScopeId,
     /// Messages so far.
     pub diagnostics: Vec<Diagnostic>,
-    templates: FxHashMap<(ClassId, View), Rc<Template<'a>>>,
-    packages: FxHashMap<(ClassId, View), ScopeId>,
+    templates: FxHashMap<(ClassId, LookupContext), Rc<Template<'a>>>,
+    packages: FxHashMap<(ClassId, LookupContext), ScopeId>,
     /// Classes as they are written, without what they inherit: where their bases are looked up.
-    bare: FxHashMap<(ClassId, View), ScopeId>,
+    bare: FxHashMap<(ClassId, LookupContext), ScopeId>,
     /// Classes whose bases are being looked up, innermost last.
-    gathering: Vec<(ClassId, View)>,
+    gathering: Vec<(ClassId, LookupContext)>,
     /// Redeclared classes whose constraints are being looked up, innermost last.
     constrained: Vec<ClassId>,
     /// Bases gathered since the outermost of these.
@@ -286,42 +286,42 @@ pub struct Instance<'a, 'l> {
     /// These go in circles many times over.
     tangled: bool,
     dynamic_packages: Vec<(ClassRef<'a>, ScopeId)>,
-    array_values: FxHashMap<(*const ast::Expr, View, bool), Val>,
+    array_values: FxHashMap<(*const ast::Expr, LookupContext, bool), ModelicaValue>,
     inner_declared: FxHashMap<(ScopeId, Symbol), NodeId>,
-    outer_checked: FxHashMap<(NodeId, *const ast::Component), bool>,
+    outer_checked: FxHashMap<(NodeId, *const ast::ComponentDeclaration), bool>,
     /// Functions that were seen to keep to what functions may do.
     functions_checked: FxHashSet<ClassId>,
     /// Classes that were seen to keep to what their kind allows.
     classes_checked: FxHashSet<ClassId>,
     /// Parameters by whether their value is only found at the start.
     at_start: FxHashMap<VarId, bool>,
-    procedures: FxHashMap<String, (bramah_expr::FunctionId, Vec<Val>)>,
+    procedures: FxHashMap<String, (bramah_expr::FunctionId, Vec<ModelicaValue>)>,
     /// External functions that stay calls, by what they are.
     externals: FxHashMap<String, bramah_expr::FunctionId>,
     /// Compiled C functions, by the text of their wrappers.
     #[cfg(feature = "fmi")]
-    compiled_c: FxHashMap<String, std::sync::Arc<dyn bramah_expr::function::External>>,
+    compiled_c: FxHashMap<String, std::sync::Arc<dyn bramah_expr::function::ExternalFunction>>,
     /// Classes of operator records, by the numbers that their values carry.
     operator_records: Vec<ClassRef<'a>>,
     /// Functions that were given as arguments.
     functions: Vec<ClassRef<'a>>,
     /// Tables read from files, by file and name.
-    tables: FxHashMap<(FileId, String), Rc<Matrix>>,
+    tables: FxHashMap<(FileId, String), Rc<TableMatrix>>,
     /// Units of other tools, by file and kind.
     #[cfg(feature = "fmi")]
-    units: FxHashMap<(String, String), building::mockup::Opened>,
+    units: FxHashMap<(String, String), building::mockup::FmuClass>,
     /// Parameters will take other values without compiling again.
     pub varied: bool,
     /// Joined stream variables.
-    pub streams: Streams,
+    pub streams: StreamConnections,
     /// How many connections name each port, once the network is known.
     pub connected: FxHashMap<NodeId, u32>,
     /// Overconstrained connectors.
-    pub overconstrained: overconstrained::Overconstrained<'a>,
+    pub overconstrained: overconstrained::OverconstrainedComponents<'a>,
     variabilities: Vec<Variability>,
     /// Values given from outside for single elements of arrays.
     given_elements: Vec<given::GivenElement<'a>>,
-    eval: state::State,
+    eval: state::EvaluationState,
 }
 
 impl<'a> Instance<'a, '_> {
@@ -335,17 +335,17 @@ impl<'a> Instance<'a, '_> {
     }
 
     /// The component behind an id.
-    pub fn node(&self, id: NodeId) -> &Node {
+    pub fn node(&self, id: NodeId) -> &InstanceNode {
         &self.nodes[id.0 as usize]
     }
 
-    fn add_node(&mut self, node: Node) -> NodeId {
+    fn add_node(&mut self, node: InstanceNode) -> NodeId {
         self.nodes.push(node);
         NodeId(u32::try_from(self.nodes.len() - 1).expect("fewer than 2^32 components"))
     }
 
     /// The scalar variable behind a number of the flat model.
-    pub fn variable(&self, id: VarId) -> &VarData<'a> {
+    pub fn variable(&self, id: VarId) -> &InstanceVariable<'a> {
         &self.variables[self.order[id.index()] as usize]
     }
 
@@ -355,7 +355,7 @@ impl<'a> Instance<'a, '_> {
 
     /// When an expression may change.
     pub fn variability(&mut self, e: ExprId) -> Variability {
-        use bramah_expr::Node as N;
+        use bramah_expr::ExprNode as N;
         while self.variabilities.len() <= e.index() {
             let id = ExprId(u32::try_from(self.variabilities.len()).expect("fewer than 2^32 nodes"));
             let v = match self.exprs.node(id) {
@@ -383,7 +383,7 @@ impl<'a> Instance<'a, '_> {
             if matches!(around.template.kind, ast::ClassKind::Connector { .. }) {
                 return around.elements.iter().find_map(|e| match e {
                     ElementState::Node(n) => match self.node(*n) {
-                        Node::Var(i) if self.variables[*i as usize].flow => Some(*i),
+                        InstanceNode::Var(i) if self.variables[*i as usize].flow => Some(*i),
                         _ => None,
                     },
                     _ => None,
@@ -451,7 +451,7 @@ impl<'a> Instance<'a, '_> {
                 let scalar = value.and_then(|v| v.scalar());
                 scalar.is_some_and(|(e, _)| self.found_at_start(e))
             }
-            (None, Some((name, b))) => self.parameters().known_attribute(i, name, &b, Type::Boolean) == Some(0.0),
+            (None, Some((name, b))) => self.parameters().known_attribute(i, name, &b, ScalarType::Boolean) == Some(0.0),
             (None, None) => false,
         };
         self.at_start.insert(v, found);
@@ -464,7 +464,7 @@ impl<'a> Instance<'a, '_> {
             return Variability::Continuous;
         }
         let data = self.variable(v);
-        if data.ty != Type::Real { data.variability.min(Variability::Discrete) } else { data.variability }
+        if data.ty != ScalarType::Real { data.variability.min(Variability::Discrete) } else { data.variability }
     }
 
     fn operand_variability(&self, e: ExprId) -> Variability {
@@ -475,9 +475,9 @@ impl<'a> Instance<'a, '_> {
     /// The name of a component as the user knows it.
     pub fn node_name(&self, node: NodeId) -> String {
         match self.node(node) {
-            Node::Var(i) => self.variables[*i as usize].name.clone(),
-            Node::Object(s) => self.scope(*s).name.clone(),
-            Node::Array { elements, .. } => {
+            InstanceNode::Var(i) => self.variables[*i as usize].name.clone(),
+            InstanceNode::Object(s) => self.scope(*s).name.clone(),
+            InstanceNode::Array { elements, .. } => {
                 let first = elements.first().map_or(String::new(), |&e| self.node_name(e));
                 first.rsplit_once('[').map_or(first.clone(), |(head, _)| head.to_string())
             }

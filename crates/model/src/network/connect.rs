@@ -1,13 +1,13 @@
 //! `connect` equations to connection sets (MLS 9.2).
 
-use super::overconstrained::{Forest, Link, is_graph_statement};
+use super::overconstrained::{OverconstrainedLink, VirtualConnectionGraph, is_graph_statement};
 use super::{Connection, FlowSet, Network, PotentialSet, SignalPair, StreamSet};
-use crate::instance::deduce::Body;
-use crate::instance::lookup::Found;
-use crate::instance::references::Selection;
-use crate::instance::template::{Base, Kind, same_pair};
-use crate::instance::{Instance, Node, NodeId, ScopeId, StreamMember, View};
-use bramah_expr::types::{Type, Variability};
+use crate::instance::deduce::LoopBody;
+use crate::instance::lookup::LookupResult;
+use crate::instance::references::NodeSelection;
+use crate::instance::template::{BaseClass, TemplateElementKind, same_pair};
+use crate::instance::{Instance, InstanceNode, LookupContext, NodeId, ScopeId, StreamMember};
+use bramah_expr::types::{ScalarType, Variability};
 use bramah_syntax::ast::{self, ClassBody, ClassKind, Equation, EquationKind, Expr, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
@@ -15,13 +15,13 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Disjoint sets over numbers given on demand.
 #[derive(Default)]
-struct Sets {
+struct ConnectionSets {
     index: FxHashMap<(u32, bool), usize>,
     keys: Vec<((u32, bool), Span, ScopeId)>,
     parent: Vec<usize>,
 }
 
-impl Sets {
+impl ConnectionSets {
     fn key(&mut self, key: (u32, bool), span: Span, scope: ScopeId) -> usize {
         *self.index.entry(key).or_insert_with(|| {
             self.keys.push((key, span, scope));
@@ -60,21 +60,21 @@ impl Sets {
 }
 
 /// One end of a connection.
-struct End {
-    selection: Selection,
+struct ConnectionEnd {
+    selection: NodeSelection,
     outside: bool,
 }
 
 #[derive(Default)]
-pub(super) struct Collector {
+pub(super) struct ConnectionCollector {
     network: Network,
-    potentials: Sets,
-    flows: Sets,
-    streams: Sets,
-    forest: Forest,
+    potentials: ConnectionSets,
+    flows: ConnectionSets,
+    streams: ConnectionSets,
+    forest: VirtualConnectionGraph,
 }
 
-impl Collector {
+impl ConnectionCollector {
     pub(super) fn collect(mut self, instance: &mut Instance<'_, '_>) -> Network {
         for scope in component_scopes(instance) {
             self.scope(instance, scope);
@@ -126,7 +126,7 @@ impl Collector {
         let (links, spanned) = std::mem::take(&mut self.forest).span(instance);
         for (link, kept) in links.into_iter().zip(spanned.kept) {
             if kept {
-                let at = Place { span: link.span, scope: link.scope, a: link.span, b: link.span };
+                let at = ConnectSite { span: link.span, scope: link.scope, a: link.span, b: link.span };
                 self.join_alike(instance, (link.a, false), (link.b, false), &at);
             } else {
                 self.network.constrained.push(link);
@@ -139,7 +139,7 @@ impl Collector {
         let template = instance.scope(scope).template.clone();
         for (base, i) in template.bases.iter().zip(0u32..) {
             let ClassBody::Long(body) = &base.ast.body else { continue };
-            let view = View { scope, base: i };
+            let view = LookupContext { scope, base: i };
             self.equations(instance, &body.equations, view, base);
         }
     }
@@ -148,8 +148,8 @@ impl Collector {
         &mut self,
         instance: &mut Instance<'a, '_>,
         equations: &'a [Equation],
-        view: View,
-        base: &Base<'_>,
+        view: LookupContext,
+        base: &BaseClass<'_>,
     ) {
         for e in equations {
             match &e.kind {
@@ -164,7 +164,7 @@ impl Collector {
                     }
                 }
                 EquationKind::For { iterators, body } if concerns_network(body) => {
-                    instance.statements().for_each(iterators, Body::Equations(body), view, &mut |instance| {
+                    instance.statements().for_each(iterators, LoopBody::Equations(body), view, &mut |instance| {
                         self.equations(instance, body, view, base);
                     });
                 }
@@ -179,7 +179,14 @@ impl Collector {
         }
     }
 
-    fn connect<'a>(&mut self, instance: &mut Instance<'a, '_>, a: &'a Expr, b: &'a Expr, view: View, span: Span) {
+    fn connect<'a>(
+        &mut self,
+        instance: &mut Instance<'a, '_>,
+        a: &'a Expr,
+        b: &'a Expr,
+        view: LookupContext,
+        span: Span,
+    ) {
         let (x, y) = (end(instance, a, view), end(instance, b, view));
         let (Some(Some(x)), Some(Some(y))) = (x, y) else { return };
         if !all_ports(instance, &x, a.span) || !all_ports(instance, &y, b.span) {
@@ -204,7 +211,7 @@ impl Collector {
             return;
         }
         for (&m, &n) in x.selection.nodes.iter().zip(y.selection.nodes.iter()) {
-            let place = Place { span, scope: view.scope, a: a.span, b: b.span };
+            let place = ConnectSite { span, scope: view.scope, a: a.span, b: b.span };
             self.join(instance, (m, x.outside), (n, y.outside), &place);
             for port in [m, n] {
                 *instance.connected.entry(port).or_default() += 1;
@@ -213,28 +220,36 @@ impl Collector {
         }
     }
 
-    fn join(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &Place) {
+    fn join(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &ConnectSite) {
         if instance.builder().is_overconstrained(a.0) && instance.builder().is_overconstrained(b.0) {
-            self.forest.links.push(Link { a: a.0, b: b.0, span: at.span, scope: at.scope });
+            self.forest.links.push(OverconstrainedLink { a: a.0, b: b.0, span: at.span, scope: at.scope });
             return;
         }
         self.join_alike(instance, a, b, at);
     }
 
-    fn join_alike(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &Place) {
+    fn join_alike(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &ConnectSite) {
         match (instance.node(a.0).clone(), instance.node(b.0).clone()) {
-            (Node::Var(x), Node::Var(y)) => self.join_variables(instance, (x, a.1), (y, b.1), at),
-            (Node::Array { dims: da, elements: x, .. }, Node::Array { dims: db, elements: y, .. }) if da == db => {
+            (InstanceNode::Var(x), InstanceNode::Var(y)) => self.join_variables(instance, (x, a.1), (y, b.1), at),
+            (InstanceNode::Array { dims: da, elements: x, .. }, InstanceNode::Array { dims: db, elements: y, .. })
+                if da == db =>
+            {
                 for (&x, &y) in x.iter().zip(y.iter()) {
                     self.join(instance, (x, a.1), (y, b.1), at);
                 }
             }
-            (Node::Object(x), Node::Object(y)) => self.join_objects(instance, (x, a.1), (y, b.1), at),
+            (InstanceNode::Object(x), InstanceNode::Object(y)) => self.join_objects(instance, (x, a.1), (y, b.1), at),
             _ => mismatch(instance, a.0, b.0, at),
         }
     }
 
-    fn join_objects(&mut self, instance: &mut Instance<'_, '_>, a: (ScopeId, bool), b: (ScopeId, bool), at: &Place) {
+    fn join_objects(
+        &mut self,
+        instance: &mut Instance<'_, '_>,
+        a: (ScopeId, bool),
+        b: (ScopeId, bool),
+        at: &ConnectSite,
+    ) {
         let (ta, tb) = (instance.scope(a.0).template.clone(), instance.scope(b.0).template.clone());
         let fits =
             ta.elements.len() == tb.elements.len() && ta.elements.iter().all(|e| tb.by_name.contains_key(&e.name));
@@ -256,7 +271,7 @@ impl Collector {
             return;
         }
         for (e, i) in ta.elements.iter().zip(0u32..) {
-            if !matches!(e.kind, Kind::Component(_)) {
+            if !matches!(e.kind, TemplateElementKind::Component(_)) {
                 continue;
             }
             let (x, y) = (instance.builder().component(a.0, i), instance.builder().component(b.0, tb.by_name[&e.name]));
@@ -266,7 +281,7 @@ impl Collector {
         }
     }
 
-    fn join_variables(&mut self, instance: &mut Instance<'_, '_>, a: (u32, bool), b: (u32, bool), at: &Place) {
+    fn join_variables(&mut self, instance: &mut Instance<'_, '_>, a: (u32, bool), b: (u32, bool), at: &ConnectSite) {
         let (x, y) = (&instance.variables[a.0 as usize], &instance.variables[b.0 as usize]);
         if x.flow != y.flow || x.ty != y.ty {
             let (nx, ny) = (x.name.clone(), y.name.clone());
@@ -304,7 +319,7 @@ impl Collector {
 }
 
 /// Constants and parameters of joined connectors are of one kind and have one value (MLS 9.3).
-fn same_parameters(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) {
+fn same_parameters(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &ConnectSite) {
     let of = |i: u32| &instance.variables[i as usize];
     let (kinds, names) = ([a, b].map(|i| of(i).variability), [a, b].map(|i| of(i).name.clone()));
     let message = if kinds[0] == kinds[1] {
@@ -321,7 +336,7 @@ fn same_parameters(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) 
     instance.diagnostics.push(d.help("give both ports the same value"));
 }
 
-struct Place {
+struct ConnectSite {
     span: Span,
     scope: ScopeId,
     a: Span,
@@ -352,7 +367,7 @@ fn choose<'a>(
     instance: &mut Instance<'a, '_>,
     branches: &'a [(Expr, Vec<Equation>)],
     otherwise: &'a [Equation],
-    view: View,
+    view: LookupContext,
 ) -> Option<&'a [Equation]> {
     for (condition, body) in branches {
         if instance.evaluator().constant_boolean(condition, view)? {
@@ -363,7 +378,7 @@ fn choose<'a>(
 }
 
 /// The ports a side of `connect` names: `None` after a message, `Some(None)` if a conditional component is absent.
-fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<Option<End>> {
+fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: LookupContext) -> Option<Option<ConnectionEnd>> {
     let ExprKind::Reference(r) = &e.kind else {
         instance.diagnostics.push(
             Diagnostic::new(Code::BadConnect, "only ports can be connected")
@@ -372,7 +387,7 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<O
         );
         return None;
     };
-    let Some(Found::Component(scope, index)) = instance.names().lookup(view, r.parts[0].name.name) else {
+    let Some(LookupResult::Component(scope, index)) = instance.names().lookup(view, r.parts[0].name.name) else {
         // The general evaluation knows how to say what is wrong.
         instance.evaluator().eval(e, view);
         if !instance.diagnostics.iter().any(Diagnostic::is_error) {
@@ -384,16 +399,16 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: View) -> Option<O
     };
     let outside = is_connector(instance, scope, index, view);
     let Some(selection) = instance.evaluator().port_selection(r, scope, index, view)? else { return Some(None) };
-    Some(Some(End { selection, outside }))
+    Some(Some(ConnectionEnd { selection, outside }))
 }
 
 /// Says so if an end is no port.
-fn all_ports(instance: &mut Instance<'_, '_>, end: &End, span: Span) -> bool {
+fn all_ports(instance: &mut Instance<'_, '_>, end: &ConnectionEnd, span: Span) -> bool {
     let Some(&node) = end.selection.nodes.iter().find(|&&n| !is_port(instance, n)) else { return true };
     let name = instance.node_name(node);
     let mut d = Diagnostic::new(Code::BadConnect, "only ports can be connected");
     d = match instance.node(node) {
-        Node::Object(scope) => {
+        InstanceNode::Object(scope) => {
             let template = instance.scope(*scope).template.clone();
             let class = instance.library.full_name(template.class);
             let ports = port_names(instance, *scope);
@@ -416,7 +431,7 @@ fn port_names(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<String> {
     let template = instance.scope(scope).template.clone();
     let mut names = Vec::new();
     for (i, e) in (0u32..).zip(&template.elements) {
-        let public = matches!(e.kind, Kind::Component(_)) && !e.protected;
+        let public = matches!(e.kind, TemplateElementKind::Component(_)) && !e.protected;
         if let Some(node) = public.then(|| instance.builder().component(scope, i)).flatten()
             && is_port(instance, node)
         {
@@ -428,12 +443,12 @@ fn port_names(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<String> {
 
 fn is_port(instance: &mut Instance<'_, '_>, node: NodeId) -> bool {
     match instance.node(node).clone() {
-        Node::Object(s) => {
+        InstanceNode::Object(s) => {
             let record = matches!(instance.scope(s).template.kind, ClassKind::Record { .. });
             record || matches!(instance.scope(s).template.kind, ClassKind::Connector { .. })
         }
-        Node::Array { elements, .. } => elements.first().is_none_or(|&e| is_port(instance, e)),
-        Node::Var(i) => {
+        InstanceNode::Array { elements, .. } => elements.first().is_none_or(|&e| is_port(instance, e)),
+        InstanceNode::Var(i) => {
             let v = &instance.variables[i as usize];
             let (scope, name) = (v.scope, v.name.clone());
             let around = &instance.scope(scope).template.kind;
@@ -450,9 +465,9 @@ fn declared_as_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, name: 
     let template = instance.scope(scope).template.clone();
     let Some(&index) = template.by_name.get(&last) else { return false };
     let element = &template.elements[index as usize];
-    let Kind::Component(c) = element.kind else { return false };
-    match instance.names().lookup_path(View { scope, base: element.base }, &c.class) {
-        Ok(Found::Class(class)) => {
+    let TemplateElementKind::Component(c) = element.kind else { return false };
+    match instance.names().lookup_path(LookupContext { scope, base: element.base }, &c.class) {
+        Ok(LookupResult::Class(class)) => {
             let t = instance.names().template(class.class, class.parent);
             matches!(t.kind, ClassKind::Connector { .. })
                 || matches!(instance.library.class(class.class).kind, ClassKind::Connector { .. })
@@ -462,18 +477,18 @@ fn declared_as_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, name: 
 }
 
 /// Whether an element is itself a connector, so that it is seen from inside its component.
-fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, view: View) -> bool {
+fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, view: LookupContext) -> bool {
     if scope != view.scope {
         return false;
     }
     let template = instance.scope(scope).template.clone();
     let element = &template.elements[index as usize];
-    let Kind::Component(c) = element.kind else { return false };
+    let TemplateElementKind::Component(c) = element.kind else { return false };
     if c.prefixes.outer {
         return false;
     }
-    match instance.names().lookup_path(View { scope, base: element.base }, &c.class) {
-        Ok(Found::Class(class)) => {
+    match instance.names().lookup_path(LookupContext { scope, base: element.base }, &c.class) {
+        Ok(LookupResult::Class(class)) => {
             let t = instance.names().template(class.class, class.parent);
             matches!(t.kind, ClassKind::Connector { .. })
         }
@@ -481,7 +496,7 @@ fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, vie
     }
 }
 
-fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &Place) {
+fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &ConnectSite) {
     let (x, y) = (instance.node_name(a), instance.node_name(b));
     instance.diagnostics.push(
         Diagnostic::new(Code::DomainMismatch, format!("`{x}` and `{y}` are of different kinds and cannot be joined"))
@@ -493,19 +508,21 @@ fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &Place) {
 
 fn what_it_is(instance: &Instance<'_, '_>, node: NodeId) -> String {
     match instance.node(node) {
-        Node::Var(i) => match instance.variables[*i as usize].causality {
-            Some(ast::Causality::Input) => "an input signal".into(),
-            Some(ast::Causality::Output) => "an output signal".into(),
+        InstanceNode::Var(i) => match instance.variables[*i as usize].causality {
+            Some(ast::CausalityPrefix::Input) => "an input signal".into(),
+            Some(ast::CausalityPrefix::Output) => "an output signal".into(),
             None => "a variable".into(),
         },
-        Node::Object(scope) => format!("a `{}`", instance.library.full_name(instance.scope(*scope).template.class)),
-        Node::Array { dims, .. } => format!("an array of size {}", crate::instance::value::size_text(dims)),
+        InstanceNode::Object(scope) => {
+            format!("a `{}`", instance.library.full_name(instance.scope(*scope).template.class))
+        }
+        InstanceNode::Array { dims, .. } => format!("an array of size {}", crate::instance::value::size_text(dims)),
     }
 }
 
 /// Ports whose variables have units of different dimension belong to different domains.
-fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) -> bool {
-    if instance.variables[a as usize].ty != Type::Real {
+fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &ConnectSite) -> bool {
+    if instance.variables[a as usize].ty != ScalarType::Real {
         return false;
     }
     let units = [a, b].map(|i| instance.parameters().text_attribute(i, "unit").filter(|u| !u.is_empty()));
@@ -513,7 +530,9 @@ fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) 
     if ua == ub {
         return false;
     }
-    let (Ok(x), Ok(y)) = (bramah_expr::units::Unit::parse(&ua), bramah_expr::units::Unit::parse(&ub)) else {
+    let (Ok(x), Ok(y)) =
+        (bramah_expr::units::MeasurementUnit::parse(&ua), bramah_expr::units::MeasurementUnit::parse(&ub))
+    else {
         return false;
     };
     if x.dimension == y.dimension {
@@ -533,7 +552,7 @@ fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Place) 
 }
 
 /// Whether a `break` of who extends the class takes the connection away: by itself, or with one of its components.
-fn is_broken(base: &Base<'_>, a: &Expr, b: &Expr) -> bool {
+fn is_broken(base: &BaseClass<'_>, a: &Expr, b: &Expr) -> bool {
     let names = |e: &Expr| match &e.kind {
         ExprKind::Reference(r) => r.parts.first().is_some_and(|p| base.broken_components.contains(&p.name.name)),
         _ => false,

@@ -1,7 +1,7 @@
 //! The network as a graph of components, for pictures and for the diagnosis.
 
 use super::Network;
-use crate::instance::{Instance, Node, NodeId, ScopeId};
+use crate::instance::{Instance, InstanceNode, NodeId, ScopeId};
 use petgraph::graph::{NodeIndex, UnGraph};
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ pub struct ComponentBox {
 
 /// A connection between two components of the top level.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Wire {
+pub struct ComponentEdge {
     /// The port of the first, relative to its component (empty for a port of the model itself).
     pub from: String,
     /// The port of the second.
@@ -30,12 +30,12 @@ pub struct Wire {
 }
 
 /// Components as nodes, connections as edges.
-pub type Graph = UnGraph<ComponentBox, Wire>;
+pub type ComponentGraph = UnGraph<ComponentBox, ComponentEdge>;
 
 impl Network {
     /// The graph of the model's top level.
-    pub fn graph(&self, instance: &Instance<'_, '_>) -> Graph {
-        let mut graph = Graph::default();
+    pub fn graph(&self, instance: &Instance<'_, '_>) -> ComponentGraph {
+        let mut graph = ComponentGraph::default();
         let mut known: BTreeMap<String, NodeIndex> = BTreeMap::new();
         let classes = component_classes(instance);
         for c in self.connections.iter().filter(|c| c.scope == instance.root) {
@@ -45,7 +45,7 @@ impl Network {
             let (cb, pb) = split(&b);
             let na = node_of(&mut graph, &mut known, &classes, ca, pa);
             let nb = node_of(&mut graph, &mut known, &classes, cb, pb);
-            graph.add_edge(na, nb, Wire { from: pa.into(), to: pb.into(), connector });
+            graph.add_edge(na, nb, ComponentEdge { from: pa.into(), to: pb.into(), connector });
         }
         graph
     }
@@ -56,7 +56,7 @@ fn split(name: &str) -> (&str, &str) {
 }
 
 fn node_of(
-    graph: &mut Graph,
+    graph: &mut ComponentGraph,
     known: &mut BTreeMap<String, NodeIndex>,
     classes: &BTreeMap<&str, Vec<String>>,
     component: &str,
@@ -85,7 +85,7 @@ fn component_classes<'i>(instance: &'i Instance<'_, '_>) -> BTreeMap<&'i str, Ve
 
 fn connector_class(instance: &Instance<'_, '_>, node: NodeId) -> String {
     match instance.node(node) {
-        Node::Object(ScopeId(i)) => instance.library.full_name(instance.scopes[*i as usize].template.class),
+        InstanceNode::Object(ScopeId(i)) => instance.library.full_name(instance.scopes[*i as usize].template.class),
         _ => "signal".into(),
     }
 }

@@ -5,8 +5,8 @@ pub use connect::component_scopes;
 mod graph;
 mod overconstrained;
 
-pub use graph::{ComponentBox, Graph, Wire};
-pub use overconstrained::Link;
+pub use graph::{ComponentBox, ComponentEdge, ComponentGraph};
+pub use overconstrained::OverconstrainedLink;
 pub use overconstrained::is_graph_statement;
 
 use crate::instance::{Instance, NodeId, ScopeId, StreamMember};
@@ -81,7 +81,7 @@ pub struct Network {
     /// Joined streams.
     pub streams: Vec<StreamSet>,
     /// Overconstrained components that are equal by their types' constraint.
-    pub constrained: Vec<Link>,
+    pub constrained: Vec<OverconstrainedLink>,
     /// Joined inputs and outputs.
     pub signals: Vec<SignalPair>,
     /// Variables of expandable connectors that nothing is connected to.
@@ -92,5 +92,5 @@ pub struct Network {
 
 /// Finds all connections of an instance. Messages go to the instance.
 pub fn network(instance: &mut Instance<'_, '_>) -> Network {
-    connect::Collector::default().collect(instance)
+    connect::ConnectionCollector::default().collect(instance)
 }

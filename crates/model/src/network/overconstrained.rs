@@ -2,8 +2,8 @@
 //! `Connections.branch` and `connect`. A connection that would close a loop in it, or join two roots, says by the function
 //! `equalityConstraint` that both sides are equal, for as many equations as components would be too many.
 
-use crate::instance::{Instance, NodeId, ScopeId, View};
-use bramah_syntax::ast::{Expr, Reference};
+use crate::instance::{Instance, LookupContext, NodeId, ScopeId};
+use bramah_syntax::ast::{ComponentReference, Expr};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use petgraph::unionfind::UnionFind;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 
 /// A connection of two overconstrained components.
 #[derive(Clone, Copy, Debug)]
-pub struct Link {
+pub struct OverconstrainedLink {
     /// One side.
     pub a: NodeId,
     /// The other.
@@ -24,7 +24,7 @@ pub struct Link {
 
 /// Roots that a model offers.
 #[derive(Clone, Copy, Debug)]
-struct Offer {
+struct PotentialRoot {
     node: usize,
     /// Smaller is preferred.
     priority: f64,
@@ -32,18 +32,18 @@ struct Offer {
 
 /// The graph as the equations of a model state it.
 #[derive(Default)]
-pub(super) struct Forest {
+pub(super) struct VirtualConnectionGraph {
     nodes: Vec<NodeId>,
     number: FxHashMap<NodeId, usize>,
     branches: Vec<(usize, usize)>,
     roots: Vec<(usize, Span)>,
-    offers: Vec<Offer>,
+    offers: Vec<PotentialRoot>,
     /// Components joined by `connect`.
-    pub links: Vec<Link>,
+    pub links: Vec<OverconstrainedLink>,
 }
 
 /// What came of it.
-pub(super) struct Spanned {
+pub(super) struct SpanningForest {
     /// For each link whether it is part of the spanning tree.
     pub kept: Vec<bool>,
     /// The chosen roots.
@@ -53,12 +53,12 @@ pub(super) struct Spanned {
 }
 
 /// Whether a call is a statement about the connection graph.
-pub fn is_graph_statement(function: &Reference) -> bool {
+pub fn is_graph_statement(function: &ComponentReference) -> bool {
     let [package, what] = function.parts.as_slice() else { return false };
     package.name.name == "Connections" && matches!(what.name.name.as_str(), "branch" | "root" | "potentialRoot")
 }
 
-impl Forest {
+impl VirtualConnectionGraph {
     fn number(&mut self, node: NodeId) -> usize {
         let next = self.nodes.len();
         let number = *self.number.entry(node).or_insert(next);
@@ -72,9 +72,9 @@ impl Forest {
     pub(super) fn add<'a>(
         &mut self,
         instance: &mut Instance<'a, '_>,
-        function: &Reference,
+        function: &ComponentReference,
         args: &'a [Expr],
-        view: View,
+        view: LookupContext,
         span: Span,
     ) {
         let what = function.parts[1].name.name.as_str();
@@ -99,17 +99,17 @@ impl Forest {
                     None => Some(0.0),
                     Some(e) => instance.evaluator().constant(e, view).and_then(|v| v.as_number(&instance.exprs)),
                 };
-                self.offers.extend(priority.map(|priority| Offer { node, priority }));
+                self.offers.extend(priority.map(|priority| PotentialRoot { node, priority }));
             }
             _ => {}
         }
     }
 
     /// Chooses the spanning trees and their roots.
-    pub(super) fn span(mut self, instance: &mut Instance<'_, '_>) -> (Vec<Link>, Spanned) {
+    pub(super) fn span(mut self, instance: &mut Instance<'_, '_>) -> (Vec<OverconstrainedLink>, SpanningForest) {
         let links = std::mem::take(&mut self.links);
         let ends: Vec<(usize, usize)> = links.iter().map(|l| (self.number(l.a), self.number(l.b))).collect();
-        let mut trees = Trees::new(self.nodes.len());
+        let mut trees = DisjointTrees::new(self.nodes.len());
         for &(a, b) in &self.branches {
             trees.join(a, b);
         }
@@ -142,10 +142,16 @@ impl Forest {
         let nearer = self.branches.iter().filter(|(a, b)| depth[*a] < depth[*b]);
         let rooted = nearer.map(|(a, _)| self.nodes[*a]).collect();
         let roots = roots.into_iter().map(|n| self.nodes[n]).collect();
-        (links, Spanned { kept, roots, rooted })
+        (links, SpanningForest { kept, roots, rooted })
     }
 
-    fn no_root(&self, instance: &mut Instance<'_, '_>, node: usize, links: &[Link], ends: &[(usize, usize)]) {
+    fn no_root(
+        &self,
+        instance: &mut Instance<'_, '_>,
+        node: usize,
+        links: &[OverconstrainedLink],
+        ends: &[(usize, usize)],
+    ) {
         let name = instance.node_name(self.nodes[node]);
         let message = format!("nothing that `{name}` is connected to can be a root");
         let mut d = Diagnostic::new(Code::BadConnect, message).note("Modelica 3.6, 9.4");
@@ -159,15 +165,15 @@ impl Forest {
 }
 
 /// Disjoint trees with their roots.
-struct Trees {
+struct DisjointTrees {
     sets: UnionFind<usize>,
     /// The root of each tree, at the node that stands for it.
     root: Vec<Option<usize>>,
 }
 
-impl Trees {
+impl DisjointTrees {
     fn new(count: usize) -> Self {
-        Trees { sets: UnionFind::new(count), root: vec![None; count] }
+        DisjointTrees { sets: UnionFind::new(count), root: vec![None; count] }
     }
 
     fn of(&self, node: usize) -> usize {

@@ -14,7 +14,7 @@ use std::rc::Rc;
 use typed_arena::Arena;
 
 /// Owner of all syntax trees of one compilation.
-pub type Trees = Arena<ast::StoredDefinition>;
+pub type SyntaxArena = Arena<ast::StoredDefinition>;
 
 /// A class in a [`Library`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -22,15 +22,15 @@ pub struct ClassId(pub u32);
 
 /// A folder that holds top-level packages, or the members of a package.
 #[derive(Clone)]
-struct Folder<'a> {
+struct PackageFolder<'a> {
     world: &'a dyn World,
     path: PathBuf,
 }
 
-struct Entry<'a> {
+struct ClassEntry<'a> {
     parent: Option<ClassId>,
     ast: &'a ast::Class,
-    folder: Option<Folder<'a>>,
+    folder: Option<PackageFolder<'a>>,
     children: FxHashMap<Symbol, Option<ClassId>>,
     /// Direct bases by the text, once they have been asked for ([`names`]).
     bases: Option<Rc<[ClassId]>>,
@@ -41,15 +41,15 @@ pub const ANNOTATIONS: &str = "annotations";
 
 /// All classes that can be named, loaded as far as they have been asked for.
 pub struct Library<'a> {
-    trees: &'a Trees,
-    entries: Vec<Entry<'a>>,
+    trees: &'a SyntaxArena,
+    entries: Vec<ClassEntry<'a>>,
     top: FxHashMap<Symbol, Option<ClassId>>,
     /// Top-level classes of the user's own files, in order.
     pub own: Vec<ClassId>,
-    roots: Vec<Folder<'a>>,
+    roots: Vec<PackageFolder<'a>>,
     by_ast: FxHashMap<*const ast::Class, ClassId>,
     /// Where files that models name are looked for.
-    data_folder: Option<Folder<'a>>,
+    data_folder: Option<PackageFolder<'a>>,
     /// C sources and libraries that may be called.
     externals: Vec<PathBuf>,
     data: FxHashMap<String, FileId>,
@@ -61,13 +61,13 @@ pub struct Library<'a> {
 
 impl<'a> Library<'a> {
     /// An empty library. `roots` are folders whose entries are top-level packages, in order of precedence.
-    pub fn new(trees: &'a Trees, roots: Vec<(&'a dyn World, PathBuf)>) -> Self {
+    pub fn new(trees: &'a SyntaxArena, roots: Vec<(&'a dyn World, PathBuf)>) -> Self {
         Library {
             trees,
             entries: Vec::new(),
             top: FxHashMap::default(),
             own: Vec::new(),
-            roots: roots.into_iter().map(|(world, path)| Folder { world, path }).collect(),
+            roots: roots.into_iter().map(|(world, path)| PackageFolder { world, path }).collect(),
             by_ast: FxHashMap::default(),
             data_folder: None,
             externals: Vec::new(),
@@ -106,12 +106,17 @@ impl<'a> Library<'a> {
         self.enter_with(ast, parent, None)
     }
 
-    fn enter_with(&mut self, ast: &'a ast::Class, parent: Option<ClassId>, folder: Option<Folder<'a>>) -> ClassId {
+    fn enter_with(
+        &mut self,
+        ast: &'a ast::Class,
+        parent: Option<ClassId>,
+        folder: Option<PackageFolder<'a>>,
+    ) -> ClassId {
         if let Some(id) = self.id_of(ast) {
             return id;
         }
         let id = ClassId(u32::try_from(self.entries.len()).expect("fewer than 2^32 classes"));
-        self.entries.push(Entry { parent, ast, folder, children: FxHashMap::default(), bases: None });
+        self.entries.push(ClassEntry { parent, ast, folder, children: FxHashMap::default(), bases: None });
         self.by_ast.insert(std::ptr::from_ref(ast), id);
         id
     }
@@ -152,7 +157,7 @@ impl<'a> Library<'a> {
         let text = world.read(path).map_err(|why| Box::new(unreadable(path, &why)))?;
         // Packages beside the file can be named without further ado.
         if let Some(parent) = path.parent() {
-            self.roots.insert(0, Folder { world, path: parent.to_path_buf() });
+            self.roots.insert(0, PackageFolder { world, path: parent.to_path_buf() });
         }
         Ok(self.add_text(&path.display().to_string(), &text))
     }
@@ -181,7 +186,7 @@ impl<'a> Library<'a> {
 
     fn add_package(&mut self, world: &'a dyn World, folder: &Path) -> Result<ClassId, Box<Diagnostic>> {
         if let Some(parent) = folder.parent() {
-            self.roots.insert(0, Folder { world, path: parent.to_path_buf() });
+            self.roots.insert(0, PackageFolder { world, path: parent.to_path_buf() });
         }
         let file = folder.join("package.mo");
         let text = world.read(&file).map_err(|why| {
@@ -189,7 +194,7 @@ impl<'a> Library<'a> {
         })?;
         let tree = self.parse(&file.display().to_string(), &text);
         let class = tree.classes.first().ok_or_else(|| Box::new(unreadable(&file, "it holds no class")))?;
-        let id = self.enter_with(class, None, Some(Folder { world, path: folder.to_path_buf() }));
+        let id = self.enter_with(class, None, Some(PackageFolder { world, path: folder.to_path_buf() }));
         self.top.insert(class.name.name, Some(id));
         self.own.push(id);
         Ok(id)
@@ -251,7 +256,7 @@ impl<'a> Library<'a> {
         self.roots.iter().flat_map(Self::names_in).collect()
     }
 
-    fn names_in(folder: &Folder<'a>) -> Vec<Symbol> {
+    fn names_in(folder: &PackageFolder<'a>) -> Vec<Symbol> {
         let mut names = Vec::new();
         for (name, is_folder) in folder.world.list(&folder.path).unwrap_or_default() {
             if is_folder && has_package(folder.world, &folder.path.join(&name)) {
@@ -263,7 +268,7 @@ impl<'a> Library<'a> {
         names
     }
 
-    fn load_from(&mut self, folder: &Folder<'a>, name: Symbol, parent: Option<ClassId>) -> Option<ClassId> {
+    fn load_from(&mut self, folder: &PackageFolder<'a>, name: Symbol, parent: Option<ClassId>) -> Option<ClassId> {
         let word = name.as_str().trim_matches('\'');
         if word.is_empty() || word.contains(['/', '\\', '\0']) || word.len() > 200 {
             return None;
@@ -274,7 +279,7 @@ impl<'a> Library<'a> {
         if let Ok(text) = world.read(&file) {
             let tree = self.parse(&file.display().to_string(), &text);
             let class = tree.classes.first().filter(|c| c.name.name == name)?;
-            return Some(self.enter_with(class, parent, Some(Folder { world, path: inner })));
+            return Some(self.enter_with(class, parent, Some(PackageFolder { world, path: inner })));
         }
         let file = folder.path.join(format!("{word}.mo"));
         let text = world.read(&file).ok()?;
@@ -285,7 +290,7 @@ impl<'a> Library<'a> {
 
     /// Says where relative names of data files begin.
     pub fn set_data_folder(&mut self, world: &'a dyn World, path: PathBuf) {
-        self.data_folder = Some(Folder { world, path });
+        self.data_folder = Some(PackageFolder { world, path });
     }
 
     /// Allows calls of C code: of these sources and libraries, and of what annotations name.

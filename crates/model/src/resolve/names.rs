@@ -4,19 +4,19 @@
 
 use super::{ClassId, Library, nested_classes};
 use bramah_syntax::ast::{
-    ArgumentKind, Class, ClassBody, ClassKind, Component, ElementKind, EnumLiteral, Expr, Ident, Import, LongBody,
-    Modification, Path,
+    Class, ClassBody, ClassKind, ComponentDeclaration, ElementKind, EnumLiteral, Expr, Ident, Import, LongBody,
+    Modification, ModificationArgumentKind, Path,
 };
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
 /// What a name stands for.
 #[derive(Clone, Copy, Debug)]
-pub enum Target<'a> {
+pub enum NameTarget<'a> {
     /// A class.
     Class(ClassId),
     /// A component.
-    Component(Member<'a>),
+    Component(MemberComponent<'a>),
     /// A literal of an enumeration.
     Literal(ClassId, &'a EnumLiteral),
     /// The variable of a `for` loop.
@@ -25,11 +25,11 @@ pub enum Target<'a> {
 
 /// A declared component with the class that declares it.
 #[derive(Clone, Copy, Debug)]
-pub struct Member<'a> {
+pub struct MemberComponent<'a> {
     /// Where it is declared: the class itself or a base.
     pub owner: ClassId,
     /// Its declaration.
-    pub component: &'a Component,
+    pub component: &'a ComponentDeclaration,
     /// Not meant for users.
     pub protected: bool,
 }
@@ -80,12 +80,12 @@ pub fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
 }
 
 /// The components of a class, its own first, then inherited ones.
-pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> Vec<Member<'a>> {
+pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> Vec<MemberComponent<'a>> {
     let mut found = Vec::new();
     for owner in lineage(library, id) {
         let Some(body) = body(library.class(owner)) else { continue };
         found.extend(body.elements.iter().filter_map(|e| match &e.kind {
-            ElementKind::Component(component) => Some(Member { owner, component, protected: e.protected }),
+            ElementKind::Component(component) => Some(MemberComponent { owner, component, protected: e.protected }),
             _ => None,
         }));
     }
@@ -110,12 +110,12 @@ pub fn resolve(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<
 }
 
 /// The class of a component; `None` for the built-in types.
-pub fn type_of(library: &mut Library<'_>, member: Member<'_>) -> Option<ClassId> {
+pub fn type_of(library: &mut Library<'_>, member: MemberComponent<'_>) -> Option<ClassId> {
     resolve(library, member.owner, &member.component.class)
 }
 
 /// What an attribute such as `unit` is given, by the component itself or by its type.
-pub fn attribute<'a>(library: &mut Library<'a>, member: Member<'a>, name: &str) -> Option<&'a Expr> {
+pub fn attribute<'a>(library: &mut Library<'a>, member: MemberComponent<'a>, name: &str) -> Option<&'a Expr> {
     if let Some(value) = given(member.component.modification.as_ref(), name) {
         return Some(value);
     }
@@ -128,7 +128,7 @@ pub fn attribute<'a>(library: &mut Library<'a>, member: Member<'a>, name: &str) 
 
 fn given<'a>(modification: Option<&'a Modification>, name: &str) -> Option<&'a Expr> {
     modification?.arguments.iter().find_map(|argument| match &argument.kind {
-        ArgumentKind::Modify { path, modification: Some(m), .. }
+        ModificationArgumentKind::Modify { path, modification: Some(m), .. }
             if path.parts.len() == 1 && path.parts[0].name == name =>
         {
             m.value.as_ref()
@@ -138,51 +138,51 @@ fn given<'a>(modification: Option<&'a Modification>, name: &str) -> Option<&'a E
 }
 
 /// What a word means inside a class: its elements, what it inherits and imports, then the classes around it.
-pub fn lookup<'a>(library: &mut Library<'a>, from: ClassId, name: Symbol) -> Option<Target<'a>> {
+pub fn lookup<'a>(library: &mut Library<'a>, from: ClassId, name: Symbol) -> Option<NameTarget<'a>> {
     let mut scope = Some(from);
     while let Some(id) = scope {
         if let Some(found) = element(library, id, name) {
             return Some(found);
         }
         if let Some(found) = imported(library, id, name) {
-            return Some(Target::Class(found));
+            return Some(NameTarget::Class(found));
         }
         scope = library.parent(id);
     }
-    library.top(name).map(Target::Class)
+    library.top(name).map(NameTarget::Class)
 }
 
 /// What a word means as an element of a class, its own or an inherited one.
-pub fn element<'a>(library: &mut Library<'a>, class: ClassId, name: Symbol) -> Option<Target<'a>> {
+pub fn element<'a>(library: &mut Library<'a>, class: ClassId, name: Symbol) -> Option<NameTarget<'a>> {
     for owner in lineage(library, class) {
         let ast = library.class(owner);
         if let ClassBody::Enumeration(Some(literals)) = &ast.body
             && let Some(literal) = literals.iter().find(|l| l.name.name == name)
         {
-            return Some(Target::Literal(owner, literal));
+            return Some(NameTarget::Literal(owner, literal));
         }
         let component = body(ast).into_iter().flat_map(|b| &b.elements).find_map(|e| match &e.kind {
             ElementKind::Component(component) if component.name.name == name => {
-                Some(Member { owner, component, protected: e.protected })
+                Some(MemberComponent { owner, component, protected: e.protected })
             }
             _ => None,
         });
         if let Some(member) = component {
-            return Some(Target::Component(member));
+            return Some(NameTarget::Component(member));
         }
         if let Some(child) = library.child(owner, name) {
-            return Some(Target::Class(child));
+            return Some(NameTarget::Class(child));
         }
     }
     None
 }
 
 /// The class in which the elements of something are looked up: a class itself, or that of a component.
-pub fn inside(library: &mut Library<'_>, target: Target<'_>) -> Option<ClassId> {
+pub fn inside(library: &mut Library<'_>, target: NameTarget<'_>) -> Option<ClassId> {
     match target {
-        Target::Class(id) => Some(id),
-        Target::Component(member) => type_of(library, member),
-        Target::Literal(..) | Target::Iterator(_) => None,
+        NameTarget::Class(id) => Some(id),
+        NameTarget::Component(member) => type_of(library, member),
+        NameTarget::Literal(..) | NameTarget::Iterator(_) => None,
     }
 }
 

@@ -4,31 +4,31 @@
 //! Union-find with signs; `w = der(phi)` links `phi` to `w`, and if `phi` equals `psi`, their derivatives are equal
 //! too. The links keep index reduction from inventing `der(phi)` beside `w`.
 
-use super::draft::{Draft, Role, Signed};
-use super::{ActionKind, Alias, messages, parameters};
-use crate::flat::{Equation, Origin, OriginKind, StateSelect, Type};
-use bramah_expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
+use super::draft::{DaeDraft, SignedVariable, SystemRole};
+use super::{Alias, EventActionKind, messages, parameters};
+use crate::flat::{ElementOrigin, FlatEquation, OriginKind, ScalarType, StateSelect};
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use bramah_syntax::diag::Diagnostic;
 
 /// Removes alias equations and rewrites everything in terms of the variables that stay. Contradicting start values go
 /// to `diagnostics`.
 pub(super) fn eliminate(
-    draft: &mut Draft,
-    known: &mut parameters::Known,
+    draft: &mut DaeDraft,
+    known: &mut parameters::SignAnalysis,
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Vec<Alias> {
-    let mut classes = Classes::new(draft);
+    let mut classes = AliasClasses::new(draft);
     let mut links = Vec::new();
     let mut found = Vec::new();
     let mut kept = vec![true; draft.equations.len()];
     for (i, equation) in draft.equations.iter().enumerate() {
         match simple_form(&draft.exprs, equation) {
-            Some(Simple::Equal(a, b)) if may_join(draft, a.variable, b) => {
+            Some(AliasEquation::Equal(a, b)) if may_join(draft, a.variable, b) => {
                 kept[i] = !classes.join(draft, a.variable, b)
             }
-            Some(Simple::Equal(a, b)) if is_found(draft, a.variable) => found.push((a, b)),
-            Some(Simple::Equal(a, b)) if is_found(draft, b.variable) => found.push((b, a)),
-            Some(Simple::Derivative(w, of)) => links.push((i, w, of)),
+            Some(AliasEquation::Equal(a, b)) if is_found(draft, a.variable) => found.push((a, b)),
+            Some(AliasEquation::Equal(a, b)) if is_found(draft, b.variable) => found.push((b, a)),
+            Some(AliasEquation::Derivative(w, of)) => links.push((i, w, of)),
             _ => {}
         }
     }
@@ -39,12 +39,12 @@ pub(super) fn eliminate(
     let aliases = aliases(&targets);
     for alias in &aliases {
         merge(draft, known, *alias, diagnostics);
-        draft.roles[alias.variable.index()] = Role::Alias;
+        draft.roles[alias.variable.index()] = SystemRole::Alias;
     }
     for (parameter, variable) in found {
         let target = targets[variable.variable.index()];
         let negated = parameter.negated != (variable.negated != target.negated);
-        share_guess(draft, parameter.variable, Signed { variable: target.variable, negated });
+        share_guess(draft, parameter.variable, SignedVariable { variable: target.variable, negated });
     }
     rewrite(draft, &targets);
     // A ring of aliases leaves one that says nothing: it determines no unknown.
@@ -55,61 +55,63 @@ pub(super) fn eliminate(
 }
 
 /// An equation of one leaf or two.
-pub(super) enum Simple {
+pub(super) enum AliasEquation {
     /// The variable is 0.
     Zero(VarId),
     /// The first equals the second.
-    Equal(Signed, Signed),
+    Equal(SignedVariable, SignedVariable),
     /// The first is the derivative of the second.
-    Derivative(Signed, Signed),
+    Derivative(SignedVariable, SignedVariable),
 }
 
 /// What an equation says where it says no more than that.
-pub(super) fn simple_form(pool: &Exprs, equation: &Equation) -> Option<Simple> {
-    let mut terms = Terms::default();
+pub(super) fn simple_form(pool: &Exprs, equation: &FlatEquation) -> Option<AliasEquation> {
+    let mut terms = AliasTerms::default();
     terms.collect(pool, equation.lhs, false, 0)?;
     terms.collect(pool, equation.rhs, true, 0)?;
     let ((a, first), (b, second)) = match terms.found.as_slice() {
         [first, second] => (first, second),
         [(only, _)] => {
-            return if let Node::Var(v) = pool.node(*only) { Some(Simple::Zero(v)) } else { None };
+            return if let ExprNode::Var(v) = pool.node(*only) { Some(AliasEquation::Zero(v)) } else { None };
         }
         _ => return None,
     };
     // `first*a + second*b = 0`
     let negated = first == second;
     match (pool.node(*a), pool.node(*b)) {
-        (Node::Var(a), Node::Var(b)) if a != b => {
-            Some(Simple::Equal(Signed { variable: a, negated: false }, Signed { variable: b, negated }))
-        }
-        (Node::Var(w), Node::Der(x)) | (Node::Der(x), Node::Var(w)) => {
-            Some(Simple::Derivative(Signed { variable: w, negated: false }, Signed { variable: x, negated }))
-        }
+        (ExprNode::Var(a), ExprNode::Var(b)) if a != b => Some(AliasEquation::Equal(
+            SignedVariable { variable: a, negated: false },
+            SignedVariable { variable: b, negated },
+        )),
+        (ExprNode::Var(w), ExprNode::Der(x)) | (ExprNode::Der(x), ExprNode::Var(w)) => Some(AliasEquation::Derivative(
+            SignedVariable { variable: w, negated: false },
+            SignedVariable { variable: x, negated },
+        )),
         _ => None,
     }
 }
 
 /// Up to two leaves with signs; `true` is minus.
 #[derive(Default)]
-struct Terms {
+struct AliasTerms {
     found: Vec<(ExprId, bool)>,
 }
 
-impl Terms {
+impl AliasTerms {
     fn collect(&mut self, pool: &Exprs, e: ExprId, negated: bool, depth: u32) -> Option<()> {
         if e == Exprs::ZERO {
             return Some(());
         }
         match pool.node(e) {
             _ if depth > 4 => None,
-            Node::Var(_) | Node::Der(_) if self.found.len() < 2 => {
+            ExprNode::Var(_) | ExprNode::Der(_) if self.found.len() < 2 => {
                 self.found.push((e, negated));
                 Some(())
             }
-            Node::Unary(Unary::Neg, a) => self.collect(pool, a, !negated, depth + 1),
-            Node::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
+            ExprNode::Unary(UnaryFunction::Neg, a) => self.collect(pool, a, !negated, depth + 1),
+            ExprNode::Binary(op @ (BinaryFunction::Add | BinaryFunction::Sub), a, b) => {
                 self.collect(pool, a, negated, depth + 1)?;
-                self.collect(pool, b, negated != (op == Binary::Sub), depth + 1)
+                self.collect(pool, b, negated != (op == BinaryFunction::Sub), depth + 1)
             }
             _ => None,
         }
@@ -117,31 +119,31 @@ impl Terms {
 }
 
 /// Both continuous, or both discrete of one type and equal.
-fn may_join(draft: &Draft, a: VarId, b: Signed) -> bool {
+fn may_join(draft: &DaeDraft, a: VarId, b: SignedVariable) -> bool {
     let continuous = |v: VarId| {
-        let real = draft.variables[v.index()].ty == Type::Real;
-        draft.role(v) == Role::Continuous || draft.role(v) == Role::Input && real
+        let real = draft.variables[v.index()].ty == ScalarType::Real;
+        draft.role(v) == SystemRole::Continuous || draft.role(v) == SystemRole::Input && real
     };
     if continuous(a) && continuous(b.variable) {
         return true;
     }
     let discrete = |v: VarId| {
-        let given = draft.variables[v.index()].ty != Type::Real && draft.role(v) == Role::Input;
-        given || matches!(draft.role(v), Role::Discrete | Role::Sample)
+        let given = draft.variables[v.index()].ty != ScalarType::Real && draft.role(v) == SystemRole::Input;
+        given || matches!(draft.role(v), SystemRole::Discrete | SystemRole::Sample)
     };
     let same = draft.variables[a.index()].ty == draft.variables[b.variable.index()].ty;
     discrete(a) && discrete(b.variable) && same && !b.negated
 }
 
 /// A parameter that is found at the start.
-fn is_found(draft: &Draft, v: VarId) -> bool {
-    draft.role(v) == Role::FreeParameter && draft.variables[v.index()].ty == Type::Real
+fn is_found(draft: &DaeDraft, v: VarId) -> bool {
+    draft.role(v) == SystemRole::FreeParameter && draft.variables[v.index()].ty == ScalarType::Real
 }
 
 /// A variable that equals a parameter found at the start begins its search at the parameter's guess where it has none of
 /// its own, and the other way round.
-fn share_guess(draft: &mut Draft, parameter: VarId, equal: Signed) {
-    if draft.role(equal.variable) != Role::Continuous {
+fn share_guess(draft: &mut DaeDraft, parameter: VarId, equal: SignedVariable) {
+    if draft.role(equal.variable) != SystemRole::Continuous {
         return;
     }
     let (p, v) = (&draft.variables[parameter.index()], &draft.variables[equal.variable.index()]);
@@ -154,19 +156,24 @@ fn share_guess(draft: &mut Draft, parameter: VarId, equal: Signed) {
 }
 
 /// `w = der(x)` links `x` to `w` unless that closes a circle. If `x` has a derivative already, `w` equals it.
-fn link_derivatives(draft: &mut Draft, classes: &mut Classes, links: &[(usize, Signed, Signed)], kept: &mut [bool]) {
-    let unknown = |v: VarId| draft.role(v) == Role::Continuous;
+fn link_derivatives(
+    draft: &mut DaeDraft,
+    classes: &mut AliasClasses,
+    links: &[(usize, SignedVariable, SignedVariable)],
+    kept: &mut [bool],
+) {
+    let unknown = |v: VarId| draft.role(v) == SystemRole::Continuous;
     let candidates: Vec<_> =
         links.iter().filter(|(_, w, of)| unknown(w.variable) && unknown(of.variable)).copied().collect();
     for (i, w, of) in candidates {
         let (w, of) = (classes.find(w.variable), classes.find_signed(of));
         // w.variable = +-(w.negated, of.negated) der(of.variable)
-        let derivative = Signed { variable: w.variable, negated: w.negated != of.negated };
+        let derivative = SignedVariable { variable: w.variable, negated: w.negated != of.negated };
         kept[i] = !classes.link(draft, of.variable, derivative);
     }
 }
 
-fn retain(draft: &mut Draft, kept: &[bool]) {
+fn retain(draft: &mut DaeDraft, kept: &[bool]) {
     let mut keep = kept.iter();
     draft.equations.retain(|_| *keep.next().expect("one flag an equation"));
     let mut keep = kept.iter();
@@ -174,52 +181,52 @@ fn retain(draft: &mut Draft, kept: &[bool]) {
 }
 
 /// Union-find over variables with signs.
-struct Classes {
-    parent: Vec<Signed>,
+struct AliasClasses {
+    parent: Vec<SignedVariable>,
     size: Vec<u32>,
     /// By root: holds an input or a sample, which nothing may determine.
     given: Vec<bool>,
     /// By root: its derivative.
-    derivative: Vec<Option<Signed>>,
+    derivative: Vec<Option<SignedVariable>>,
     /// By root: the variable of which it is the derivative.
     integral: Vec<Option<VarId>>,
 }
 
-impl Classes {
-    fn new(draft: &Draft) -> Self {
+impl AliasClasses {
+    fn new(draft: &DaeDraft) -> Self {
         let count = draft.variables.len();
-        Classes {
-            parent: (0..count as u32).map(|i| Signed { variable: VarId(i), negated: false }).collect(),
+        AliasClasses {
+            parent: (0..count as u32).map(|i| SignedVariable { variable: VarId(i), negated: false }).collect(),
             size: vec![1; count],
-            given: draft.roles.iter().map(|role| matches!(role, Role::Input | Role::Sample)).collect(),
+            given: draft.roles.iter().map(|role| matches!(role, SystemRole::Input | SystemRole::Sample)).collect(),
             derivative: vec![None; count],
             integral: vec![None; count],
         }
     }
 
-    fn find(&mut self, v: VarId) -> Signed {
-        let mut root = Signed { variable: v, negated: false };
+    fn find(&mut self, v: VarId) -> SignedVariable {
+        let mut root = SignedVariable { variable: v, negated: false };
         while self.parent[root.variable.index()].variable != root.variable {
             let next = self.parent[root.variable.index()];
-            root = Signed { variable: next.variable, negated: root.negated != next.negated };
+            root = SignedVariable { variable: next.variable, negated: root.negated != next.negated };
         }
         // Point everything on the way at the root.
-        let mut at = Signed { variable: v, negated: root.negated };
+        let mut at = SignedVariable { variable: v, negated: root.negated };
         while self.parent[at.variable.index()].variable != root.variable && at.variable != root.variable {
             let next = self.parent[at.variable.index()];
-            self.parent[at.variable.index()] = Signed { variable: root.variable, negated: at.negated };
-            at = Signed { variable: next.variable, negated: at.negated != next.negated };
+            self.parent[at.variable.index()] = SignedVariable { variable: root.variable, negated: at.negated };
+            at = SignedVariable { variable: next.variable, negated: at.negated != next.negated };
         }
         root
     }
 
-    fn find_signed(&mut self, v: Signed) -> Signed {
+    fn find_signed(&mut self, v: SignedVariable) -> SignedVariable {
         let root = self.find(v.variable);
-        Signed { variable: root.variable, negated: root.negated != v.negated }
+        SignedVariable { variable: root.variable, negated: root.negated != v.negated }
     }
 
     /// Makes `a` equal `b`; false when that is not possible or not new.
-    fn join(&mut self, draft: &Draft, a: VarId, b: Signed) -> bool {
+    fn join(&mut self, draft: &DaeDraft, a: VarId, b: SignedVariable) -> bool {
         let (a, b) = (self.find(a), self.find_signed(b));
         if a.variable == b.variable || !self.gifts_fit(a.variable, b.variable) || !self.chains_fit(a, b) {
             return false;
@@ -230,10 +237,10 @@ impl Classes {
         } else {
             (b.variable, a.variable)
         };
-        self.parent[small.index()] = Signed { variable: large, negated };
+        self.parent[small.index()] = SignedVariable { variable: large, negated };
         self.size[large.index()] += self.size[small.index()];
         self.given[large.index()] |= self.given[small.index()];
-        self.carry_links(draft, small, Signed { variable: large, negated });
+        self.carry_links(draft, small, SignedVariable { variable: large, negated });
         true
     }
 
@@ -250,7 +257,7 @@ impl Classes {
     }
 
     /// Whether the derivatives of both, as far as they are linked, can be made equal too.
-    fn chains_fit(&mut self, a: Signed, b: Signed) -> bool {
+    fn chains_fit(&mut self, a: SignedVariable, b: SignedVariable) -> bool {
         let (mut a, mut b) = (a, b);
         while a.variable != b.variable {
             if self.would_close_circle(a.variable, b.variable) {
@@ -261,23 +268,23 @@ impl Classes {
                 return true;
             };
             let (da, db) = (self.find_signed(da), self.find_signed(db));
-            a = Signed { variable: da.variable, negated: da.negated != a.negated };
-            b = Signed { variable: db.variable, negated: db.negated != b.negated };
+            a = SignedVariable { variable: da.variable, negated: da.negated != a.negated };
+            b = SignedVariable { variable: db.variable, negated: db.negated != b.negated };
         }
         a.negated == b.negated
     }
 
     /// After `small` joined `large`: its derivative is that of `large` as well.
-    fn carry_links(&mut self, draft: &Draft, small: VarId, large: Signed) {
+    fn carry_links(&mut self, draft: &DaeDraft, small: VarId, large: SignedVariable) {
         if let Some(of) = self.integral[small.index()].take() {
             // Sides of the link keep their meaning: readers go through `find`.
             self.integral[large.variable.index()].get_or_insert(of);
         }
         if let Some(d) = self.derivative[small.index()].take() {
-            let turned = Signed { variable: d.variable, negated: d.negated != large.negated };
+            let turned = SignedVariable { variable: d.variable, negated: d.negated != large.negated };
             match self.derivative[large.variable.index()] {
                 Some(own) => {
-                    let same = Signed { variable: own.variable, negated: own.negated != turned.negated };
+                    let same = SignedVariable { variable: own.variable, negated: own.negated != turned.negated };
                     self.join(draft, turned.variable, same);
                 }
                 None => self.derivative[large.variable.index()] = Some(turned),
@@ -286,9 +293,9 @@ impl Classes {
     }
 
     /// Makes `d` the derivative of the root `of`; false when that would close a circle.
-    fn link(&mut self, draft: &Draft, of: VarId, d: Signed) -> bool {
+    fn link(&mut self, draft: &DaeDraft, of: VarId, d: SignedVariable) -> bool {
         if let Some(own) = self.derivative[of.index()] {
-            let same = Signed { variable: own.variable, negated: own.negated != d.negated };
+            let same = SignedVariable { variable: own.variable, negated: own.negated != d.negated };
             return self.join(draft, d.variable, same);
         }
         if self.given[of.index()] || self.given[d.variable.index()] || self.reaches(d.variable, of) {
@@ -336,7 +343,7 @@ impl Classes {
 
     /// Chooses the variable that stays in each class, and records the links between those. Variables whose derivative has
     /// a name are `differentiated` though the equation that says so may be gone.
-    fn settle(&mut self, draft: &mut Draft, differentiated: impl Iterator<Item = VarId>) -> Vec<Signed> {
+    fn settle(&mut self, draft: &mut DaeDraft, differentiated: impl Iterator<Item = VarId>) -> Vec<SignedVariable> {
         let count = draft.variables.len();
         let ranks = ranks(draft, differentiated);
         let mut best: Vec<Option<VarId>> = vec![None; count];
@@ -350,43 +357,43 @@ impl Classes {
         let target = |v: VarId| {
             let root = self.find(v);
             let variable = best[root.variable.index()].expect("every class has a best member");
-            Signed { variable, negated: root.negated != self.find(variable).negated }
+            SignedVariable { variable, negated: root.negated != self.find(variable).negated }
         };
         (0..count as u32).map(VarId).map(target).collect()
     }
 
     /// Rewrites the links in terms of the variables that stay.
-    fn store_links(&mut self, draft: &mut Draft, best: &[Option<VarId>]) {
+    fn store_links(&mut self, draft: &mut DaeDraft, best: &[Option<VarId>]) {
         for root in 0..self.derivative.len() {
             let Some(d) = self.derivative[root] else { continue };
             let of = best[root].expect("a root has a class");
             let d_root = self.find(d.variable);
             let w = best[d_root.variable.index()].expect("a root has a class");
             let negated = self.find(of).negated ^ d.negated ^ d_root.negated ^ self.find(w).negated;
-            draft.derivative[of.index()] = Some(Signed { variable: w, negated });
+            draft.derivative[of.index()] = Some(SignedVariable { variable: w, negated });
         }
     }
 }
 
-fn aliases(targets: &[Signed]) -> Vec<Alias> {
+fn aliases(targets: &[SignedVariable]) -> Vec<Alias> {
     let pairs = targets.iter().enumerate().filter(|(i, t)| t.variable.index() != *i);
     pairs.map(|(i, t)| Alias { variable: VarId(i as u32), target: t.variable, negated: t.negated }).collect()
 }
 
 /// What makes a variable the better representative; larger wins.
-type Rank = (bool, bool, StateSelect, bool, bool, bool, bool, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>);
+type AliasRank = (bool, bool, StateSelect, bool, bool, bool, bool, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>);
 
-fn ranks(draft: &mut Draft, named: impl Iterator<Item = VarId>) -> Vec<Rank> {
+fn ranks(draft: &mut DaeDraft, named: impl Iterator<Item = VarId>) -> Vec<AliasRank> {
     let mut differentiated = vec![false; draft.variables.len()];
     named.for_each(|v| differentiated[v.index()] = true);
     for (i, _) in draft.live_nodes().iter().enumerate().filter(|(_, live)| **live) {
-        if let Node::Der(v) = draft.exprs.node(ExprId(i as u32)) {
+        if let ExprNode::Der(v) = draft.exprs.node(ExprId(i as u32)) {
             differentiated[v.index()] = true;
         }
     }
-    let rank = |(i, v): (usize, &crate::flat::Variable)| {
+    let rank = |(i, v): (usize, &crate::flat::FlatVariable)| {
         (
-            matches!(draft.roles[i], Role::Input | Role::Sample),
+            matches!(draft.roles[i], SystemRole::Input | SystemRole::Sample),
             differentiated[i],
             v.state_select,
             v.fixed,
@@ -401,7 +408,7 @@ fn ranks(draft: &mut Draft, named: impl Iterator<Item = VarId>) -> Vec<Rank> {
 }
 
 /// Merges the attributes of an alias into its target.
-fn merge(draft: &mut Draft, known: &mut parameters::Known, alias: Alias, diagnostics: &mut Vec<Diagnostic>) {
+fn merge(draft: &mut DaeDraft, known: &mut parameters::SignAnalysis, alias: Alias, diagnostics: &mut Vec<Diagnostic>) {
     let from = draft.variables[alias.variable.index()].clone();
     let start = from.start.map(|e| if alias.negated { draft.exprs.neg(e) } else { e });
     draft.when_assigned[alias.target.index()] |= draft.when_assigned[alias.variable.index()];
@@ -433,8 +440,8 @@ fn merged_select(a: StateSelect, b: StateSelect) -> StateSelect {
 
 /// Two fixed starts of one quantity must be equal: now, by value, and in every run, by a check.
 fn compare_starts(
-    draft: &mut Draft,
-    known: &mut parameters::Known,
+    draft: &mut DaeDraft,
+    known: &mut parameters::SignAnalysis,
     alias: Alias,
     start: Option<ExprId>,
     diagnostics: &mut Vec<Diagnostic>,
@@ -450,20 +457,20 @@ fn compare_starts(
     if gap.abs() > 1e-9 * size.abs().max(1e-12) {
         diagnostics.push(messages::contradicting_aliases(draft, known, alias));
     } else {
-        let origin = Origin { kind: OriginKind::Start, ..draft.variables[alias.variable.index()].origin };
-        draft.initial_checks.push(Equation { lhs: ours, rhs: theirs, origin });
+        let origin = ElementOrigin { kind: OriginKind::Start, ..draft.variables[alias.variable.index()].origin };
+        draft.initial_checks.push(FlatEquation { lhs: ours, rhs: theirs, origin });
     }
 }
 
 /// Replaces aliases and linked derivatives everywhere.
-fn rewrite(draft: &mut Draft, targets: &[Signed]) {
+fn rewrite(draft: &mut DaeDraft, targets: &[SignedVariable]) {
     let derivative = draft.derivative.clone();
     let roles = draft.roles.clone();
     let map = draft.rewritten(|pool, node| match node {
-        Node::Var(v) => Some(targets[v.index()].expression(pool)),
-        Node::Der(v) => {
+        ExprNode::Var(v) => Some(targets[v.index()].expression(pool)),
+        ExprNode::Der(v) => {
             let target = targets[v.index()];
-            if !matches!(roles[target.variable.index()], Role::Continuous | Role::Input) {
+            if !matches!(roles[target.variable.index()], SystemRole::Continuous | SystemRole::Input) {
                 return Some(Exprs::ZERO);
             }
             let (e, turned) = match derivative[target.variable.index()] {
@@ -472,7 +479,7 @@ fn rewrite(draft: &mut Draft, targets: &[Signed]) {
             };
             Some(signed(pool, e, target.negated != turned))
         }
-        Node::Pre(v) => {
+        ExprNode::Pre(v) => {
             let e = pool.pre(targets[v.index()].variable);
             Some(signed(pool, e, targets[v.index()].negated))
         }
@@ -480,7 +487,7 @@ fn rewrite(draft: &mut Draft, targets: &[Signed]) {
     });
     draft.map_expressions(&map);
     for action in &mut draft.actions {
-        if let ActionKind::Reinit(v, value) = &mut action.kind {
+        if let EventActionKind::Reinit(v, value) = &mut action.kind {
             let target = targets[v.index()];
             *v = target.variable;
             *value = signed(&mut draft.exprs, *value, target.negated);

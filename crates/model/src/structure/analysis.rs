@@ -1,34 +1,34 @@
 //! The steps of the analysis in their order.
 
-use super::draft::{Draft, Role, RowKind};
-use super::incidence::{NONE, Scanner};
+use super::draft::{DaeDraft, EquationRole, SystemRole};
+use super::incidence::{IncidenceScanner, NONE};
 use super::matching::{Matching, maximum};
-use super::pantelides::Reduction;
-use super::parameters::Known;
+use super::pantelides::IndexReduction;
+use super::parameters::SignAnalysis;
 use super::solve_block::BlockSolver;
-use super::sorting::{Columns, System, SystemRow};
+use super::sorting::{EquationSystem, SystemRow, UnknownColumns};
 use super::{
-    ActionKind, Alias, Assign, Block, Conserved, Dae, Selection, StateChoice, Unknown, alias, assertions, cancelling,
-    closed_groups, conserved, constants, delays, dependence, discrete, dummy_derivatives, duplicates, events, held,
-    initial, messages, parameters, regularity, start_derivatives, zeros,
+    Alias, BltBlock, ConservedQuantity, Dae, EventActionKind, ExplicitAssignment, StateChoice, StateSelection, Unknown,
+    alias, assertions, cancelling, closed_groups, conserved, constants, delays, dependence, discrete,
+    dummy_derivatives, duplicates, events, held, initial, messages, parameters, regularity, start_derivatives, zeros,
 };
-use crate::flat::{Equation, FlatModel, Origin, OriginKind, StateSelect};
-use bramah_expr::{Node, VarId};
-use bramah_syntax::diag::{Checked, Diagnostic};
+use crate::flat::{ElementOrigin, FlatEquation, FlatModel, OriginKind, StateSelect};
+use bramah_expr::{ExprNode, VarId};
+use bramah_syntax::diag::{Diagnostic, StageResult};
 
 /// Sorts a flat model into a [`Dae`].
 ///
 /// Errors: circles of parameters (E214), their ranges (E215) and what is asserted of them (E503), singular structure
 /// (E301, E302, E303), constraints that cannot be differentiated (E304), start values that contradict each other (E401).
 /// A note lists start values that were chosen.
-pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> Checked<Dae> {
+pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> StageResult<Dae> {
     let mut diagnostics = Vec::new();
     match settled(flat, choice, &mut diagnostics) {
-        Ok(dae) if !diagnostics.iter().any(Diagnostic::is_error) => Checked::new(dae, diagnostics),
-        Ok(_) => Checked::failed(diagnostics),
+        Ok(dae) if !diagnostics.iter().any(Diagnostic::is_error) => StageResult::new(dae, diagnostics),
+        Ok(_) => StageResult::failed(diagnostics),
         Err(error) => {
             diagnostics.push(error);
-            Checked::failed(diagnostics)
+            StageResult::failed(diagnostics)
         }
     }
 }
@@ -60,13 +60,13 @@ fn run(
     decisive: &[VarId],
     diagnostics: &mut Vec<Diagnostic>,
 ) -> Result<(Dae, Vec<VarId>), Diagnostic> {
-    let mut draft = Draft::new(flat);
+    let mut draft = DaeDraft::new(flat);
     let order = parameters::order(&mut draft)?;
     let values = parameters::values(&draft, &order);
     diagnostics.extend(parameters::check(&draft, &order, &values));
     make_discrete_equations(&mut draft);
     prefer_reinitialized(&mut draft);
-    let mut known = Known::new(&draft, values.clone());
+    let mut known = SignAnalysis::new(&draft, values.clone());
     if !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(assertions::check(&draft, &mut known));
     }
@@ -91,27 +91,27 @@ fn run(
     replace_linked_derivatives(&mut draft);
     let running = running_system(&draft, &reduction, &states)?;
 
-    let mut blocks = Blocks::sort_running(&mut draft, &mut known, &running, &states.states);
+    let mut blocks = SystemBlocks::sort_running(&mut draft, &mut known, &running, &states.states);
     // before the conditions of the start stand among the equations
     let mut conserved = conserved::find(&mut draft, &mut known, &states.states);
     let with_derivatives = start_derivatives::add(&mut draft, &running, &states.states)?;
     let at_start = with_derivatives.as_ref().unwrap_or(&running);
-    let model = initial::Model { running: at_start, states: &states.states, demoted: &states.demoted };
+    let model = initial::InitializationContext { running: at_start, states: &states.states, demoted: &states.demoted };
     let start = initial::assemble(&mut draft, &mut known, &model);
     diagnostics.extend(start.diagnostics);
     let further = zeros::decisive(&mut draft, &mut known, [&running, &start.system]);
     blocks.sort_initial(&mut draft, &mut known, &start.system);
     let stated = conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate]);
     duplicates::share(&mut draft.exprs, &mut blocks.continuous, stated);
-    let States { states, demoted, .. } = states;
-    let rest = Rest { order, aliases, states, demoted, selections: chosen.selections, conserved };
+    let StatePartition { states, demoted, .. } = states;
+    let rest = AnalysisFindings { order, aliases, states, demoted, selections: chosen.selections, conserved };
     let mut dae = assemble(flat, draft, blocks, rest);
     dae.chosen_starts = start.chosen;
     dae.initial_checks.extend(start.checks);
     Ok((dae, further))
 }
 
-fn make_discrete_equations(draft: &mut Draft) {
+fn make_discrete_equations(draft: &mut DaeDraft) {
     delays::extract(draft);
     events::extract(draft);
     discrete::translate_whens(draft);
@@ -121,11 +121,11 @@ fn make_discrete_equations(draft: &mut Draft) {
 /// fault too.
 fn explain_singular(
     flat: &FlatModel,
-    reduced: &Draft,
+    reduced: &DaeDraft,
     aliases: &[Alias],
-    found: &regularity::Singularity,
+    found: &regularity::StructuralSingularity,
 ) -> Diagnostic {
-    let mut whole = Draft::new(flat);
+    let mut whole = DaeDraft::new(flat);
     make_discrete_equations(&mut whole);
     discrete::classify(&mut whole);
     match regularity::check(&whole) {
@@ -135,22 +135,22 @@ fn explain_singular(
 }
 
 /// What `reinit` sets must be a state if that is possible.
-fn prefer_reinitialized(draft: &mut Draft) {
+fn prefer_reinitialized(draft: &mut DaeDraft) {
     for action in &draft.actions {
-        if let ActionKind::Reinit(v, _) = action.kind {
+        if let EventActionKind::Reinit(v, _) = action.kind {
             let select = &mut draft.variables[v.index()].state_select;
             *select = (*select).max(StateSelect::Prefer);
         }
     }
 }
 
-fn refuse_input_derivatives(draft: &Draft) -> Result<(), Diagnostic> {
-    let mut walk = bramah_expr::visit::Walk::default();
+fn refuse_input_derivatives(draft: &DaeDraft) -> Result<(), Diagnostic> {
+    let mut walk = bramah_expr::visit::NodeTraversal::default();
     for equation in draft.equations.iter().chain(&draft.initial_equations) {
         let mut found = None;
         walk.each(&draft.exprs, &[equation.lhs, equation.rhs], |_, node| {
-            if let Node::Der(v) = node
-                && draft.role(v) == Role::Input
+            if let ExprNode::Der(v) = node
+                && draft.role(v) == SystemRole::Input
             {
                 found = found.or(Some(v));
             }
@@ -163,9 +163,9 @@ fn refuse_input_derivatives(draft: &Draft) -> Result<(), Diagnostic> {
     Ok(())
 }
 
-fn reinit_of_no_state(draft: &Draft, states: &[VarId]) -> Vec<Diagnostic> {
+fn reinit_of_no_state(draft: &DaeDraft, states: &[VarId]) -> Vec<Diagnostic> {
     let reinits = draft.actions.iter().filter_map(|action| match action.kind {
-        ActionKind::Reinit(v, _) if states.binary_search(&v).is_err() => {
+        EventActionKind::Reinit(v, _) if states.binary_search(&v).is_err() => {
             Some(messages::reinit_of_no_state(draft, v, action.origin))
         }
         _ => None,
@@ -174,7 +174,7 @@ fn reinit_of_no_state(draft: &Draft, states: &[VarId]) -> Vec<Diagnostic> {
 }
 
 /// The outcome of state selection.
-struct States {
+struct StatePartition {
     /// Ascending.
     states: Vec<VarId>,
     /// Differentiated, but not states; ascending.
@@ -184,13 +184,14 @@ struct States {
 }
 
 /// Every variable with a derivative that is no dummy is a state. Dummies become variables.
-fn settle_states(draft: &mut Draft, reduction: &mut Reduction, dummies: &[u32]) -> States {
+fn settle_states(draft: &mut DaeDraft, reduction: &mut IndexReduction, dummies: &[u32]) -> StatePartition {
     let mut is_dummy = vec![false; reduction.columns.len()];
     for &c in dummies {
         is_dummy[c as usize] = true;
         reduction.materialize(draft, c);
     }
-    let mut found = States { states: Vec::new(), demoted: Vec::new(), is_state: vec![false; reduction.columns.len()] };
+    let mut found =
+        StatePartition { states: Vec::new(), demoted: Vec::new(), is_state: vec![false; reduction.columns.len()] };
     for c in 0..reduction.columns.len() {
         let (derivative, variable) = (reduction.columns[c].derivative, reduction.variable(c as u32));
         let (Some(v), true) = (variable, derivative != NONE) else { continue };
@@ -207,31 +208,35 @@ fn settle_states(draft: &mut Draft, reduction: &mut Reduction, dummies: &[u32]) 
 }
 
 /// After this `Der` stands only for derivatives of states that are no variables themselves.
-fn replace_linked_derivatives(draft: &mut Draft) {
+fn replace_linked_derivatives(draft: &mut DaeDraft) {
     let links = draft.derivative.clone();
     if links.iter().all(Option::is_none) {
         return;
     }
     let map = draft.rewritten(|pool, node| match node {
-        Node::Der(v) => links[v.index()].map(|w| w.expression(pool)),
+        ExprNode::Der(v) => links[v.index()].map(|w| w.expression(pool)),
         _ => None,
     });
     draft.map_expressions(&map);
 }
 
 /// All equations between events, matched; discrete ones behind the continuous ones.
-fn running_system(draft: &Draft, reduction: &Reduction, states: &States) -> Result<System, Diagnostic> {
-    let mut system = System::default();
+fn running_system(
+    draft: &DaeDraft,
+    reduction: &IndexReduction,
+    states: &StatePartition,
+) -> Result<EquationSystem, Diagnostic> {
+    let mut system = EquationSystem::default();
     let solved = reduction.columns.iter().zip(&states.is_state).filter(|(_, is_state)| !**is_state);
     system.columns.extend(solved.map(|(column, _)| column.unknown));
     let continuous_columns = system.columns.len() as u32;
-    system.columns.extend(draft.with_role(Role::Discrete).into_iter().map(Unknown::Var));
-    let columns = Columns::new(&system.columns, draft.variables.len());
-    let column = |node: Node| columns.of_node(node);
-    let mut scanner = Scanner::default();
+    system.columns.extend(draft.with_role(SystemRole::Discrete).into_iter().map(Unknown::Var));
+    let columns = UnknownColumns::new(&system.columns, draft.variables.len());
+    let column = |node: ExprNode| columns.of_node(node);
+    let mut scanner = IncidenceScanner::default();
     for continuous in [true, false] {
         for (i, (&equation, &kind)) in draft.equations.iter().zip(&draft.kinds).enumerate() {
-            if (kind == RowKind::Continuous) != continuous {
+            if (kind == EquationRole::Continuous) != continuous {
                 continue;
             }
             let sides = [equation.lhs, equation.rhs];
@@ -251,30 +256,35 @@ fn running_system(draft: &Draft, reduction: &Reduction, states: &States) -> Resu
 }
 
 /// The regularity check has seen to it that the counts fit; what is left are constraints that depend on each other.
-fn check_matched(draft: &Draft, system: &System) -> Result<(), Diagnostic> {
+fn check_matched(draft: &DaeDraft, system: &EquationSystem) -> Result<(), Diagnostic> {
     let Matching { column_of, row_of } = &system.matching;
     if column_of.iter().chain(row_of).all(|&p| p != NONE) {
         return Ok(());
     }
     let parts = super::dulmage_mendelsohn::decompose(&system.incidence, &system.matching);
-    let equations: Vec<Equation> = parts.over.rows.iter().map(|&r| system.rows[r as usize].equation).collect();
+    let equations: Vec<FlatEquation> = parts.over.rows.iter().map(|&r| system.rows[r as usize].equation).collect();
     let unknowns: Vec<Unknown> = parts.under.columns.iter().map(|&c| system.columns[c as usize]).collect();
     Err(messages::dependent_constraints(draft, &equations, &unknowns))
 }
 
 /// The three sorted systems.
 #[derive(Default)]
-struct Blocks {
-    continuous: Vec<Block>,
-    event: Vec<Block>,
-    initial: Vec<Block>,
+struct SystemBlocks {
+    continuous: Vec<BltBlock>,
+    event: Vec<BltBlock>,
+    initial: Vec<BltBlock>,
     /// `der(x) := w` of states whose derivative is a variable.
-    derivatives: Vec<Block>,
+    derivatives: Vec<BltBlock>,
 }
 
-impl Blocks {
-    fn sort_running(draft: &mut Draft, known: &mut Known, system: &System, states: &[VarId]) -> Blocks {
-        let mut made = Blocks { derivatives: linked_derivatives(draft, states), ..Blocks::default() };
+impl SystemBlocks {
+    fn sort_running(
+        draft: &mut DaeDraft,
+        known: &mut SignAnalysis,
+        system: &EquationSystem,
+        states: &[VarId],
+    ) -> SystemBlocks {
+        let mut made = SystemBlocks { derivatives: linked_derivatives(draft, states), ..SystemBlocks::default() };
         let mut solver = BlockSolver::new(draft, known);
         let (components, blocks) = system.continuous_blocks(&mut solver);
         made.event = system.with_discrete(&mut solver, &components, &blocks);
@@ -284,7 +294,7 @@ impl Blocks {
         made
     }
 
-    fn sort_initial(&mut self, draft: &mut Draft, known: &mut Known, system: &System) {
+    fn sort_initial(&mut self, draft: &mut DaeDraft, known: &mut SignAnalysis, system: &EquationSystem) {
         let mut solver = BlockSolver::new(draft, known);
         let (components, blocks) = system.continuous_blocks(&mut solver);
         self.initial = system.with_discrete(&mut solver, &components, &blocks);
@@ -292,35 +302,35 @@ impl Blocks {
     }
 }
 
-fn linked_derivatives(draft: &mut Draft, states: &[VarId]) -> Vec<Block> {
+fn linked_derivatives(draft: &mut DaeDraft, states: &[VarId]) -> Vec<BltBlock> {
     let mut blocks = Vec::new();
     for &x in states {
         let Some(w) = draft.derivative[x.index()] else { continue };
         let lhs = draft.exprs.der(x);
         let rhs = w.expression(&mut draft.exprs);
-        let origin = Origin { kind: OriginKind::Made, ..draft.variables[w.variable.index()].origin };
-        draft.add_equation(Equation { lhs, rhs, origin }, RowKind::Definition);
+        let origin = ElementOrigin { kind: OriginKind::Made, ..draft.variables[w.variable.index()].origin };
+        draft.add_equation(FlatEquation { lhs, rhs, origin }, EquationRole::Definition);
         let equation = draft.equations.len() as u32 - 1;
-        blocks.push(Block::Assign(Assign { unknown: Unknown::Der(x), value: rhs, equation }));
+        blocks.push(BltBlock::Assign(ExplicitAssignment { unknown: Unknown::Der(x), value: rhs, equation }));
     }
     blocks
 }
 
 /// What the steps found beside blocks.
-struct Rest {
+struct AnalysisFindings {
     order: Vec<VarId>,
     aliases: Vec<Alias>,
     states: Vec<VarId>,
     demoted: Vec<VarId>,
-    selections: Vec<Selection>,
-    conserved: Vec<Conserved>,
+    selections: Vec<StateSelection>,
+    conserved: Vec<ConservedQuantity>,
 }
 
-fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> Dae {
+fn assemble(flat: &FlatModel, mut draft: DaeDraft, blocks: SystemBlocks, rest: AnalysisFindings) -> Dae {
     let mut initial_checks = Vec::new();
     for equation in std::mem::take(&mut draft.initial_checks) {
         let residual = draft.exprs.sub(equation.lhs, equation.rhs);
-        draft.add_equation(equation, RowKind::Definition);
+        draft.add_equation(equation, EquationRole::Definition);
         initial_checks.push((residual, draft.equations.len() as u32 - 1));
     }
     Dae {
@@ -329,12 +339,12 @@ fn assemble(flat: &FlatModel, mut draft: Draft, blocks: Blocks, rest: Rest) -> D
         enumerations: flat.enumerations.clone(),
         experiment: flat.experiment,
         parameters: rest.order,
-        free_parameters: draft.with_role(Role::FreeParameter),
+        free_parameters: draft.with_role(SystemRole::FreeParameter),
         inputs: (0..flat.variables.len() as u32).map(VarId).filter(|v| flat.variables[v.index()].input).collect(),
         aliases: rest.aliases,
         states: rest.states,
         differentiated: rest.demoted,
-        discrete: draft.with_role(Role::Discrete),
+        discrete: draft.with_role(SystemRole::Discrete),
         continuous: blocks.continuous,
         event: blocks.event,
         initial: blocks.initial,

@@ -1,19 +1,19 @@
 //! Assertions about parameters alone: reported before the model is run, for no run can make them hold.
 
-use super::draft::Draft;
-use super::parameters::Known;
-use crate::flat::{Assert, Message, MessagePart, Type};
+use super::draft::DaeDraft;
+use super::parameters::SignAnalysis;
+use crate::flat::{FlatAssertion, MessagePart, MessageTemplate, ScalarType};
 use bramah_expr::Exprs;
 use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Assertions that the parameters as they stand in the model contradict (E503). Warnings are left to the run.
-pub(super) fn check(draft: &Draft, known: &mut Known) -> Vec<Diagnostic> {
-    let broken = |a: &&Assert| !a.warning && known.value(&draft.exprs, a.condition) == Some(0.0);
-    let broken: Vec<&Assert> = draft.asserts.iter().filter(broken).collect();
+pub(super) fn check(draft: &DaeDraft, known: &mut SignAnalysis) -> Vec<Diagnostic> {
+    let broken = |a: &&FlatAssertion| !a.warning && known.value(&draft.exprs, a.condition) == Some(0.0);
+    let broken: Vec<&FlatAssertion> = draft.asserts.iter().filter(broken).collect();
     broken.into_iter().map(|assert| complaint(draft, known, assert)).collect()
 }
 
-fn complaint(draft: &Draft, known: &mut Known, assert: &Assert) -> Diagnostic {
+fn complaint(draft: &DaeDraft, known: &mut SignAnalysis, assert: &FlatAssertion) -> Diagnostic {
     let text = words(&draft.exprs, known, &assert.message);
     let mut made = Diagnostic::new(Code::AssertionFailed, text);
     let holder = &draft.instances[assert.origin.instance as usize];
@@ -31,10 +31,10 @@ fn complaint(draft: &Draft, known: &mut Known, assert: &Assert) -> Diagnostic {
 }
 
 /// The message with the values that are known.
-fn words(pool: &Exprs, known: &mut Known, message: &Message) -> String {
+fn words(pool: &Exprs, known: &mut SignAnalysis, message: &MessageTemplate) -> String {
     let piece = |part: &MessagePart| match part {
         MessagePart::Text(words) => words.clone(),
-        MessagePart::Value(e, Type::Boolean) => {
+        MessagePart::Value(e, ScalarType::Boolean) => {
             known.value(pool, *e).map(|v| (v != 0.0).to_string()).unwrap_or_default()
         }
         MessagePart::Value(e, _) => known.value(pool, *e).map_or_else(|| "?".into(), |v| v.to_string()),

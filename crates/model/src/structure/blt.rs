@@ -5,8 +5,8 @@ use super::incidence::NONE;
 /// Tarjan's algorithm without recursion. Components come out dependencies first, members in order of their numbers.
 ///
 /// `successors` appends to its second argument the nodes that a node depends on.
-pub(super) fn components(nodes: usize, mut successors: impl FnMut(u32, &mut Vec<u32>)) -> Components {
-    let mut search = Search {
+pub(super) fn components(nodes: usize, mut successors: impl FnMut(u32, &mut Vec<u32>)) -> StrongComponents {
+    let mut search = TarjanSearch {
         index: vec![NONE; nodes],
         low: vec![0; nodes],
         on_stack: vec![false; nodes],
@@ -14,7 +14,7 @@ pub(super) fn components(nodes: usize, mut successors: impl FnMut(u32, &mut Vec<
         frames: Vec::new(),
         edges: Vec::new(),
         count: 0,
-        found: Components { starts: vec![0], members: Vec::with_capacity(nodes) },
+        found: StrongComponents { starts: vec![0], members: Vec::with_capacity(nodes) },
     };
     for node in 0..nodes as u32 {
         if search.index[node as usize] == NONE {
@@ -26,12 +26,12 @@ pub(super) fn components(nodes: usize, mut successors: impl FnMut(u32, &mut Vec<
 
 /// Strongly connected components, in order.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Components {
+pub(super) struct StrongComponents {
     starts: Vec<u32>,
     members: Vec<u32>,
 }
 
-impl Components {
+impl StrongComponents {
     /// How many there are.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
@@ -43,8 +43,8 @@ impl Components {
     }
 
     /// Those for which `keep` says true, in order.
-    pub fn filtered(&self, keep: impl Fn(&[u32]) -> bool) -> Components {
-        let mut kept = Components { starts: vec![0], members: Vec::with_capacity(self.members.len()) };
+    pub fn filtered(&self, keep: impl Fn(&[u32]) -> bool) -> StrongComponents {
+        let mut kept = StrongComponents { starts: vec![0], members: Vec::with_capacity(self.members.len()) };
         for members in self.iter().filter(|members| keep(members)) {
             kept.members.extend_from_slice(members);
             kept.starts.push(kept.members.len() as u32);
@@ -58,25 +58,25 @@ impl Components {
     }
 }
 
-/// A node being searched: its edges are a stretch of `Search::edges`.
-struct Frame {
+/// A node being searched: its edges are a stretch of `TarjanSearch::edges`.
+struct TarjanFrame {
     node: u32,
     first: u32,
     next: u32,
 }
 
-struct Search {
+struct TarjanSearch {
     index: Vec<u32>,
     low: Vec<u32>,
     on_stack: Vec<bool>,
     stack: Vec<u32>,
-    frames: Vec<Frame>,
+    frames: Vec<TarjanFrame>,
     edges: Vec<u32>,
     count: u32,
-    found: Components,
+    found: StrongComponents,
 }
 
-impl Search {
+impl TarjanSearch {
     fn from(&mut self, root: u32, successors: &mut impl FnMut(u32, &mut Vec<u32>)) {
         self.enter(root, successors);
         while let Some(frame) = self.frames.last_mut() {
@@ -102,7 +102,7 @@ impl Search {
         self.on_stack[node as usize] = true;
         let first = self.edges.len() as u32;
         successors(node, &mut self.edges);
-        self.frames.push(Frame { node, first, next: first });
+        self.frames.push(TarjanFrame { node, first, next: first });
     }
 
     fn leave(&mut self) {

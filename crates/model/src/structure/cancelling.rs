@@ -4,10 +4,10 @@
 //! i3`: together `i0 = 0`, so that `i0` is no state, which neither equation tells. Only what leaves a single variable
 //! is replaced; all other sums stay as they were written.
 
-use super::draft::{Draft, Role, RowKind};
-use super::parameters::Known;
-use crate::flat::{Equation, Variability};
-use bramah_expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
+use super::draft::{DaeDraft, EquationRole, SystemRole};
+use super::parameters::SignAnalysis;
+use crate::flat::{FlatEquation, Variability};
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use rustc_hash::FxHashMap;
 
 /// A factor below this part of those it comes from has cancelled.
@@ -17,9 +17,10 @@ const LONGEST: usize = 64;
 
 /// Replaces sums of which another one leaves a single variable by `variable = 0`: those of the model by themselves, then
 /// those that hold at the start with the help of the model's.
-pub(super) fn replace(draft: &mut Draft, known: &mut Known) {
-    let mut sums = Sums::default();
-    let of_model: Vec<usize> = (0..draft.equations.len()).filter(|&i| draft.kinds[i] == RowKind::Continuous).collect();
+pub(super) fn replace(draft: &mut DaeDraft, known: &mut SignAnalysis) {
+    let mut sums = CancellationRows::default();
+    let of_model: Vec<usize> =
+        (0..draft.equations.len()).filter(|&i| draft.kinds[i] == EquationRole::Continuous).collect();
     sums.extend(draft, known, &draft.equations, &of_model);
     let mut found = Vec::new();
     sums.reduce(0, |i, v| found.push((i, v)));
@@ -35,24 +36,24 @@ pub(super) fn replace(draft: &mut Draft, known: &mut Known) {
     }
 }
 
-fn set(pool: &mut Exprs, equation: &mut Equation, v: VarId) {
+fn set(pool: &mut Exprs, equation: &mut FlatEquation, v: VarId) {
     (equation.lhs, equation.rhs) = (pool.var(v), Exprs::ZERO);
 }
 
 /// Variables with their factors, in the order of variables.
-pub(super) type Sum = Vec<(VarId, f64)>;
+pub(super) type VariableSum = Vec<(VarId, f64)>;
 
 #[derive(Default)]
-struct Sums {
+struct CancellationRows {
     /// The equations, with their sums.
-    rows: Vec<(usize, Sum)>,
+    rows: Vec<(usize, VariableSum)>,
     /// The rows that hold a variable, or held it.
     users: FxHashMap<VarId, Vec<usize>>,
 }
 
-impl Sums {
+impl CancellationRows {
     /// Adds those of these equations that are sums.
-    fn extend(&mut self, draft: &Draft, known: &mut Known, equations: &[Equation], which: &[usize]) {
+    fn extend(&mut self, draft: &DaeDraft, known: &mut SignAnalysis, equations: &[FlatEquation], which: &[usize]) {
         let mut zero = Vec::new();
         for &i in which {
             match terms(draft, known, &equations[i]) {
@@ -103,12 +104,12 @@ impl Sums {
 }
 
 /// The factor of a variable in a sum; 0 where it does not occur.
-pub(super) fn factor(sum: &Sum, v: VarId) -> f64 {
+pub(super) fn factor(sum: &VariableSum, v: VarId) -> f64 {
     sum.binary_search_by_key(&v, |t| t.0).map_or(0.0, |i| sum[i].1)
 }
 
 /// The only variable of a multiple of `b`, as long or longer by one, taken from `a`.
-fn single(a: &Sum, b: &Sum) -> Option<VarId> {
+fn single(a: &VariableSum, b: &VariableSum) -> Option<VarId> {
     if a.len() < 2 || b.len() < a.len() || b.len() > a.len() + 1 {
         return None;
     }
@@ -129,27 +130,27 @@ fn single(a: &Sum, b: &Sum) -> Option<VarId> {
 }
 
 /// The terms of `lhs - rhs` where that is a sum of continuous unknowns with factors that no run changes.
-pub(super) fn terms(draft: &Draft, known: &mut Known, equation: &Equation) -> Option<Sum> {
+pub(super) fn terms(draft: &DaeDraft, known: &mut SignAnalysis, equation: &FlatEquation) -> Option<VariableSum> {
     let pool = &draft.exprs;
     let mut number = |e: ExprId| {
         let constant = |v: &VarId| draft.variables[v.index()].variability == Variability::Constant;
         pool.as_num(e).or_else(|| known.value(pool, e).filter(|_| pool.variables(e).iter().all(constant)))
     };
-    let mut found = Sum::new();
+    let mut found = VariableSum::new();
     let mut open = vec![(equation.lhs, 1.0), (equation.rhs, -1.0)];
     while let Some((e, factor)) = open.pop() {
         match pool.node(e) {
             _ if e == Exprs::ZERO => {}
-            Node::Var(v) if draft.role(v) == Role::Continuous => found.push((v, factor)),
-            Node::Unary(Unary::Neg, a) => open.push((a, -factor)),
-            Node::Binary(Binary::Add, a, b) => open.extend([(a, factor), (b, factor)]),
-            Node::Binary(Binary::Sub, a, b) => open.extend([(a, factor), (b, -factor)]),
-            Node::Binary(Binary::Mul, a, b) => match (number(a), number(b)) {
+            ExprNode::Var(v) if draft.role(v) == SystemRole::Continuous => found.push((v, factor)),
+            ExprNode::Unary(UnaryFunction::Neg, a) => open.push((a, -factor)),
+            ExprNode::Binary(BinaryFunction::Add, a, b) => open.extend([(a, factor), (b, factor)]),
+            ExprNode::Binary(BinaryFunction::Sub, a, b) => open.extend([(a, factor), (b, -factor)]),
+            ExprNode::Binary(BinaryFunction::Mul, a, b) => match (number(a), number(b)) {
                 (Some(x), _) => open.push((b, factor * x)),
                 (_, Some(x)) => open.push((a, factor * x)),
                 _ => return None,
             },
-            Node::Binary(Binary::Div, a, b) => open.push((a, factor / number(b)?)),
+            ExprNode::Binary(BinaryFunction::Div, a, b) => open.push((a, factor / number(b)?)),
             _ => return None,
         }
         if found.len() > LONGEST {

@@ -7,21 +7,21 @@
 //! at the node are one expression of its pressure.
 
 use super::Alias;
-use super::draft::{Draft, Role, RowKind};
-use crate::flat::Equation;
-use bramah_expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
+use super::draft::{DaeDraft, EquationRole, SystemRole};
+use crate::flat::FlatEquation;
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use std::collections::BTreeMap;
 
 /// The first closed group: the flows of its sums, ascending.
-pub(super) fn find(draft: &Draft, aliases: &[Alias]) -> Option<Vec<VarId>> {
-    let sums = Sums::new(draft, aliases).collect();
-    let mut uses: Vec<Vec<(u32, Factor)>> = vec![Vec::new(); draft.variables.len()];
+pub(super) fn find(draft: &DaeDraft, aliases: &[Alias]) -> Option<Vec<VarId>> {
+    let sums = FlowSumFinder::new(draft, aliases).collect();
+    let mut uses: Vec<Vec<(u32, FlowFactor)>> = vec![Vec::new(); draft.variables.len()];
     for (i, sum) in sums.iter().enumerate() {
         for (v, factor) in sum {
             uses[v.index()].push((i as u32, factor.clone()));
         }
     }
-    let mut groups = Groups::new(sums.len());
+    let mut groups = FlowGroups::new(sums.len());
     leave_out_ends(&sums, &mut uses, &mut groups);
     for uses in uses.iter().filter(|u| !u.is_empty()) {
         match &uses[..] {
@@ -44,7 +44,7 @@ pub(super) fn find(draft: &Draft, aliases: &[Alias]) -> Option<Vec<VarId>> {
 }
 
 /// A sum with a flow that no other sum holds cannot take part; without it, other flows stand alone.
-fn leave_out_ends(sums: &[Sum], uses: &mut [Vec<(u32, Factor)>], groups: &mut Groups) {
+fn leave_out_ends(sums: &[FlowSum], uses: &mut [Vec<(u32, FlowFactor)>], groups: &mut FlowGroups) {
     let mut alone: Vec<usize> = (0..uses.len()).filter(|&v| uses[v].len() == 1).collect();
     while let Some(v) = alone.pop() {
         let Some(&(row, _)) = uses[v].first() else { continue };
@@ -60,18 +60,18 @@ fn leave_out_ends(sums: &[Sum], uses: &mut [Vec<(u32, Factor)>], groups: &mut Gr
 }
 
 /// Unknowns with their factors.
-type Sum = Vec<(VarId, Factor)>;
+type FlowSum = Vec<(VarId, FlowFactor)>;
 
 /// A number times powers of expressions.
 #[derive(Clone, Debug, PartialEq)]
-struct Factor {
+struct FlowFactor {
     number: f64,
     powers: BTreeMap<ExprId, i32>,
 }
 
-impl Factor {
+impl FlowFactor {
     fn one() -> Self {
-        Factor { number: 1.0, powers: BTreeMap::new() }
+        FlowFactor { number: 1.0, powers: BTreeMap::new() }
     }
 
     fn negative(mut self) -> Self {
@@ -79,7 +79,7 @@ impl Factor {
         self
     }
 
-    fn times(&self, other: &Factor, exponent: i32) -> Self {
+    fn times(&self, other: &FlowFactor, exponent: i32) -> Self {
         let mut product = self.clone();
         product.number *= other.number.powi(exponent);
         for (e, n) in &other.powers {
@@ -92,7 +92,7 @@ impl Factor {
         product
     }
 
-    fn over(&self, other: &Factor) -> Self {
+    fn over(&self, other: &FlowFactor) -> Self {
         self.times(other, -1)
     }
 
@@ -102,16 +102,16 @@ impl Factor {
 }
 
 /// Looks for continuous equations that are sums of unknowns, the flows among them with factors.
-struct Sums<'d> {
-    draft: &'d Draft,
+struct FlowSumFinder<'d> {
+    draft: &'d DaeDraft,
     /// By variable: declared `flow`, or equal to one that is.
     flow: Vec<bool>,
     /// What a variable equals, if an equation says so.
     definition: Vec<Option<ExprId>>,
 }
 
-impl<'d> Sums<'d> {
-    fn new(draft: &'d Draft, aliases: &[Alias]) -> Self {
+impl<'d> FlowSumFinder<'d> {
+    fn new(draft: &'d DaeDraft, aliases: &[Alias]) -> Self {
         let mut flow: Vec<bool> = draft.variables.iter().map(|v| v.flow).collect();
         for alias in aliases {
             flow[alias.target.index()] |= flow[alias.variable.index()];
@@ -119,30 +119,32 @@ impl<'d> Sums<'d> {
         let mut definition = vec![None; draft.variables.len()];
         for equation in &draft.equations {
             for (side, other) in [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)] {
-                if let Node::Var(v) = draft.exprs.node(side) {
+                if let ExprNode::Var(v) = draft.exprs.node(side) {
                     definition[v.index()].get_or_insert(other);
                 }
             }
         }
-        Sums { draft, flow, definition }
+        FlowSumFinder { draft, flow, definition }
     }
 
-    fn collect(&self) -> Vec<Sum> {
+    fn collect(&self) -> Vec<FlowSum> {
         let rows = self.draft.equations.iter().zip(&self.draft.kinds);
-        rows.filter(|(_, kind)| **kind == RowKind::Continuous).filter_map(|(e, _)| self.terms(e)).collect()
+        rows.filter(|(_, kind)| **kind == EquationRole::Continuous).filter_map(|(e, _)| self.terms(e)).collect()
     }
 
     /// The terms of `lhs - rhs`.
-    fn terms(&self, equation: &Equation) -> Option<Sum> {
-        let mut found = Sum::new();
-        let mut stack = vec![(equation.rhs, Factor::one().negative()), (equation.lhs, Factor::one())];
+    fn terms(&self, equation: &FlatEquation) -> Option<FlowSum> {
+        let mut found = FlowSum::new();
+        let mut stack = vec![(equation.rhs, FlowFactor::one().negative()), (equation.lhs, FlowFactor::one())];
         while let Some((e, factor)) = stack.pop() {
             match self.draft.exprs.node(e) {
-                Node::Var(v) if self.draft.role(v) == Role::Continuous => found.push((v, factor)),
-                Node::Unary(Unary::Neg, a) => stack.push((a, factor.negative())),
-                Node::Binary(Binary::Add, a, b) => stack.extend([(b, factor.clone()), (a, factor)]),
-                Node::Binary(Binary::Sub, a, b) => stack.extend([(b, factor.clone().negative()), (a, factor)]),
-                Node::Binary(Binary::Mul, a, b) => match (self.is_flow(a), self.is_flow(b)) {
+                ExprNode::Var(v) if self.draft.role(v) == SystemRole::Continuous => found.push((v, factor)),
+                ExprNode::Unary(UnaryFunction::Neg, a) => stack.push((a, factor.negative())),
+                ExprNode::Binary(BinaryFunction::Add, a, b) => stack.extend([(b, factor.clone()), (a, factor)]),
+                ExprNode::Binary(BinaryFunction::Sub, a, b) => {
+                    stack.extend([(b, factor.clone().negative()), (a, factor)])
+                }
+                ExprNode::Binary(BinaryFunction::Mul, a, b) => match (self.is_flow(a), self.is_flow(b)) {
                     (false, true) => stack.push((b, factor.times(&self.factor(a)?, 1))),
                     (true, false) => stack.push((a, factor.times(&self.factor(b)?, 1))),
                     _ => return None,
@@ -159,39 +161,39 @@ impl<'d> Sums<'d> {
     /// A flow, with either sign.
     fn is_flow(&self, e: ExprId) -> bool {
         match self.draft.exprs.node(e) {
-            Node::Var(v) => self.draft.role(v) == Role::Continuous && self.flow[v.index()],
-            Node::Unary(Unary::Neg, a) => self.is_flow(a),
+            ExprNode::Var(v) => self.draft.role(v) == SystemRole::Continuous && self.flow[v.index()],
+            ExprNode::Unary(UnaryFunction::Neg, a) => self.is_flow(a),
             _ => false,
         }
     }
 
     /// What a flow is multiplied with: by what it equals, so that equal ones are recognised. Nothing constant: that is
     /// a resistance, and no balance.
-    fn factor(&self, e: ExprId) -> Option<Factor> {
+    fn factor(&self, e: ExprId) -> Option<FlowFactor> {
         let exprs = &self.draft.exprs;
-        let continuous = |v: &VarId| self.draft.role(*v) == Role::Continuous;
+        let continuous = |v: &VarId| self.draft.role(*v) == SystemRole::Continuous;
         let equal = match exprs.node(e) {
-            Node::Var(v) if continuous(&v) => self.definition[v.index()].unwrap_or(e),
+            ExprNode::Var(v) if continuous(&v) => self.definition[v.index()].unwrap_or(e),
             _ => e,
         };
         let varies = exprs.dependencies(&[equal]).vars.iter().any(continuous);
-        varies.then(|| Factor { number: 1.0, powers: BTreeMap::from([(equal, 1)]) })
+        varies.then(|| FlowFactor { number: 1.0, powers: BTreeMap::from([(equal, 1)]) })
     }
 }
 
 /// Rows joined by common flows, with the factor of each row relative to its root.
-struct Groups {
-    parent: Vec<(u32, Factor)>,
+struct FlowGroups {
+    parent: Vec<(u32, FlowFactor)>,
     closed: Vec<bool>,
 }
 
-impl Groups {
+impl FlowGroups {
     fn new(rows: usize) -> Self {
-        Groups { parent: (0..rows as u32).map(|r| (r, Factor::one())).collect(), closed: vec![true; rows] }
+        FlowGroups { parent: (0..rows as u32).map(|r| (r, FlowFactor::one())).collect(), closed: vec![true; rows] }
     }
 
-    fn find(&mut self, row: u32) -> (u32, Factor) {
-        let (mut at, mut factor) = (row, Factor::one());
+    fn find(&mut self, row: u32) -> (u32, FlowFactor) {
+        let (mut at, mut factor) = (row, FlowFactor::one());
         while self.parent[at as usize].0 != at {
             // Halve the path on the way.
             let (next, own) = self.parent[at as usize].clone();
@@ -206,7 +208,7 @@ impl Groups {
     }
 
     /// Row `b` counts `ratio` times row `a`.
-    fn join(&mut self, a: u32, b: u32, ratio: &Factor) {
+    fn join(&mut self, a: u32, b: u32, ratio: &FlowFactor) {
         let ((a, s), (b, t)) = (self.find(a), self.find(b));
         let ratio = s.times(ratio, 1).over(&t);
         if a != b {

@@ -10,12 +10,12 @@
 //! Volumes joined without a resistance have one pressure. Their sum is conserved, and its rate is what all others bring:
 //! the sum of their flows by the equations of the connections between them.
 
-use super::Conserved;
-use super::cancelling::{Sum, factor, terms};
-use super::draft::{Draft, Role, RowKind};
-use super::parameters::Known;
-use crate::flat::{self, Type};
-use bramah_expr::{ExprId, Exprs, Node, Unary, VarId};
+use super::ConservedQuantity;
+use super::cancelling::{VariableSum, factor, terms};
+use super::draft::{DaeDraft, EquationRole, SystemRole};
+use super::parameters::SignAnalysis;
+use crate::flat::{self, ScalarType};
+use bramah_expr::{ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 
@@ -23,14 +23,14 @@ use std::collections::VecDeque;
 const DEPTH: u32 = 3;
 
 /// The quantities of all states that have one.
-pub(super) fn find(draft: &mut Draft, known: &mut Known, states: &[VarId]) -> Vec<Conserved> {
+pub(super) fn find(draft: &mut DaeDraft, known: &mut SignAnalysis, states: &[VarId]) -> Vec<ConservedQuantity> {
     if draft.conserved.is_empty() {
         return Vec::new();
     }
-    let mut groups: Vec<(VarId, Vec<flat::Conserved>)> = Vec::new();
+    let mut groups: Vec<(VarId, Vec<flat::ConservationDeclaration>)> = Vec::new();
     let mut at: FxHashMap<VarId, usize> = FxHashMap::default();
     for stated in &draft.conserved {
-        let Node::Var(state) = draft.exprs.node(stated.state) else { continue };
+        let ExprNode::Var(state) = draft.exprs.node(stated.state) else { continue };
         if states.binary_search(&state).is_ok() {
             let place = *at.entry(state).or_insert(groups.len());
             if place == groups.len() {
@@ -40,11 +40,16 @@ pub(super) fn find(draft: &mut Draft, known: &mut Known, states: &[VarId]) -> Ve
         }
     }
     let joined = groups.iter().any(|(_, members)| members.len() > 1);
-    let balances = if joined { Balances::new(draft, known) } else { Balances::default() };
+    let balances = if joined { BalanceEquations::new(draft, known) } else { BalanceEquations::default() };
     groups.into_iter().filter_map(|(state, members)| conserved(draft, &balances, state, &members)).collect()
 }
 
-fn conserved(draft: &mut Draft, balances: &Balances, state: VarId, members: &[flat::Conserved]) -> Option<Conserved> {
+fn conserved(
+    draft: &mut DaeDraft,
+    balances: &BalanceEquations,
+    state: VarId,
+    members: &[flat::ConservationDeclaration],
+) -> Option<ConservedQuantity> {
     let rate = match members {
         [one] => one.rate,
         all => balances.joint_rate(&mut draft.exprs, &all.iter().map(|m| m.rate).collect::<Vec<_>>())?,
@@ -57,25 +62,25 @@ fn conserved(draft: &mut Draft, balances: &Balances, state: VarId, members: &[fl
         nominal = draft.exprs.add(nominal, more);
     }
     let name = format!("{} (integrated)", draft.text(quantity));
-    let variable = draft.make_variable(name, Type::Real, Role::Continuous, first.origin);
+    let variable = draft.make_variable(name, ScalarType::Real, SystemRole::Continuous, first.origin);
     draft.variables[variable.index()].nominal = Some(nominal);
     let (lhs, rhs) = (draft.exprs.var(variable), quantity);
-    draft.add_equation(flat::Equation { lhs, rhs, origin: first.origin }, RowKind::Definition);
+    draft.add_equation(flat::FlatEquation { lhs, rhs, origin: first.origin }, EquationRole::Definition);
     let equation = u32::try_from(draft.equations.len() - 1).expect("fewer than 2^32 equations");
-    Some(Conserved { state, variable, quantity, rate, equation })
+    Some(ConservedQuantity { state, variable, quantity, rate, equation })
 }
 
-fn nominal(draft: &Draft, quantity: ExprId) -> ExprId {
+fn nominal(draft: &DaeDraft, quantity: ExprId) -> ExprId {
     match draft.exprs.node(quantity) {
-        Node::Var(v) => draft.variables[v.index()].nominal.unwrap_or(Exprs::ONE),
+        ExprNode::Var(v) => draft.variables[v.index()].nominal.unwrap_or(Exprs::ONE),
         _ => Exprs::ONE,
     }
 }
 
 /// Equations that are sums of variables with constant factors, those of connections among them.
 #[derive(Default)]
-struct Balances {
-    rows: Vec<Sum>,
+struct BalanceEquations {
+    rows: Vec<VariableSum>,
     /// The rows that hold a variable.
     users: FxHashMap<VarId, Vec<usize>>,
     /// Whether a variable is the flow of a connector.
@@ -84,15 +89,15 @@ struct Balances {
     given: FxHashMap<VarId, ExprId>,
 }
 
-impl Balances {
-    fn new(draft: &Draft, known: &mut Known) -> Balances {
+impl BalanceEquations {
+    fn new(draft: &DaeDraft, known: &mut SignAnalysis) -> BalanceEquations {
         let flows = draft.variables.iter().map(|v| v.flow).collect();
-        let mut balances = Balances { flows, ..Balances::default() };
+        let mut balances = BalanceEquations { flows, ..BalanceEquations::default() };
         for (equation, kind) in draft.equations.iter().zip(&draft.kinds) {
-            if *kind != RowKind::Continuous {
+            if *kind != EquationRole::Continuous {
                 continue;
             }
-            if let Node::Var(v) = draft.exprs.node(equation.lhs) {
+            if let ExprNode::Var(v) = draft.exprs.node(equation.lhs) {
                 balances.given.entry(v).or_insert(equation.rhs);
             }
             if let Some(sum) = terms(draft, known, equation) {
@@ -109,7 +114,7 @@ impl Balances {
     /// with the same density. `None` where the connections do not show that.
     fn joint_rate(&self, pool: &mut Exprs, rates: &[ExprId]) -> Option<ExprId> {
         let mut sum = Exprs::ZERO;
-        let mut flows: Vec<(ExprId, Sum)> = Vec::new();
+        let mut flows: Vec<(ExprId, VariableSum)> = Vec::new();
         for &rate in rates {
             let candidates = pool.variables(rate);
             let flow = candidates.into_iter().filter(|v| self.flows[v.index()]).find_map(|v| {
@@ -120,7 +125,7 @@ impl Balances {
             let (flow, affine) = flow?;
             sum = pool.add(sum, affine.rest);
             let (density, sign) = match pool.node(affine.coefficient) {
-                Node::Unary(Unary::Neg, density) => (density, -1.0),
+                ExprNode::Unary(UnaryFunction::Neg, density) => (density, -1.0),
                 _ => (affine.coefficient, 1.0),
             };
             let density = self.meaning(pool, density, DEPTH);
@@ -147,7 +152,7 @@ impl Balances {
         let mut images: FxHashMap<ExprId, ExprId> = FxHashMap::default();
         for part in pool.reachable(&[e], |_| true) {
             let image = match pool.node(part) {
-                Node::Var(v) if depth > 0 => match self.given.get(&v) {
+                ExprNode::Var(v) if depth > 0 => match self.given.get(&v) {
                     Some(&given) => self.meaning(pool, given, depth - 1),
                     None => part,
                 },
@@ -160,9 +165,9 @@ impl Balances {
     }
 
     /// The sum of these flows as a sum of others.
-    fn brought(&self, flows: &[(VarId, f64)]) -> Option<Sum> {
+    fn brought(&self, flows: &[(VarId, f64)]) -> Option<VariableSum> {
         let wanted: FxHashSet<VarId> = flows.iter().map(|f| f.0).collect();
-        let Some((first, rest)) = flows.split_first() else { return Some(Sum::new()) };
+        let Some((first, rest)) = flows.split_first() else { return Some(VariableSum::new()) };
         if rest.is_empty() {
             return Some(vec![*first]);
         }
@@ -190,23 +195,24 @@ impl Balances {
     /// The rows that lead from a sum to one with `flow`, each with the variable that it shares with those before.
     fn way(
         &self,
-        from: &Sum,
+        from: &VariableSum,
         used: &FxHashSet<usize>,
         wanted: &FxHashSet<VarId>,
         flow: VarId,
     ) -> Option<Vec<(VarId, usize)>> {
         let mut came: FxHashMap<usize, (VarId, Option<usize>)> = FxHashMap::default();
         let mut open: VecDeque<usize> = VecDeque::new();
-        let reach = |sum: &Sum, by: Option<usize>, came: &mut FxHashMap<usize, _>, open: &mut VecDeque<usize>| {
-            for (v, _) in sum.iter().filter(|(v, _)| !wanted.contains(v)) {
-                for &row in self.users[v].iter().filter(|row| !used.contains(row)) {
-                    came.entry(row).or_insert_with(|| {
-                        open.push_back(row);
-                        (*v, by)
-                    });
+        let reach =
+            |sum: &VariableSum, by: Option<usize>, came: &mut FxHashMap<usize, _>, open: &mut VecDeque<usize>| {
+                for (v, _) in sum.iter().filter(|(v, _)| !wanted.contains(v)) {
+                    for &row in self.users[v].iter().filter(|row| !used.contains(row)) {
+                        came.entry(row).or_insert_with(|| {
+                            open.push_back(row);
+                            (*v, by)
+                        });
+                    }
                 }
-            }
-        };
+            };
         reach(from, None, &mut came, &mut open);
         while let Some(row) = open.pop_front() {
             if self.rows[row].iter().any(|(v, _)| *v == flow) {
@@ -227,7 +233,7 @@ impl Balances {
 }
 
 /// With each variable once: what only passes from one volume to the other goes.
-fn netted(mut flows: Sum) -> Sum {
+fn netted(mut flows: VariableSum) -> VariableSum {
     flows.sort_unstable_by_key(|f| f.0);
     flows.dedup_by(|later, kept| {
         let same = later.0 == kept.0;
@@ -239,7 +245,7 @@ fn netted(mut flows: Sum) -> Sum {
 }
 
 /// The combination of two sums in which a variable of both does not occur.
-fn without(a: &Sum, b: &Sum, shared: VarId) -> Option<Sum> {
+fn without(a: &VariableSum, b: &VariableSum, shared: VarId) -> Option<VariableSum> {
     let ratio = factor(a, shared) / factor(b, shared);
     let mut all: Vec<VarId> = a.iter().chain(b).map(|t| t.0).filter(|&v| v != shared).collect();
     all.sort_unstable();

@@ -1,16 +1,16 @@
 //! Unknowns that equal a parameter or a number, such as a temperature that nothing heats or the potential of a ground:
 //! the other equations read what they equal, so that it is known to be constant wherever that decides about the structure.
 
-use super::alias::{self, Simple};
-use super::draft::{Draft, Role, RowKind, Signed};
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use super::alias::{self, AliasEquation};
+use super::draft::{DaeDraft, EquationRole, SignedVariable, SystemRole};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 
 /// Rewrites the continuous equations, but for those that say what the unknowns equal.
-pub(super) fn read(draft: &mut Draft) {
+pub(super) fn read(draft: &mut DaeDraft) {
     let mut equal: Vec<Option<ExprId>> = vec![None; draft.variables.len()];
     let mut says = vec![false; draft.equations.len()];
     for (i, says) in says.iter_mut().enumerate() {
-        let found = if draft.kinds[i] == RowKind::Continuous { constant(draft, i) } else { None };
+        let found = if draft.kinds[i] == EquationRole::Continuous { constant(draft, i) } else { None };
         if let Some((v, constant)) = found.filter(|(v, _)| equal[v.index()].is_none()) {
             equal[v.index()] = Some(constant);
             *says = true;
@@ -20,7 +20,7 @@ pub(super) fn read(draft: &mut Draft) {
         return;
     }
     let map = draft.rewritten(|_, node| match node {
-        Node::Var(v) => equal[v.index()],
+        ExprNode::Var(v) => equal[v.index()],
         _ => None,
     });
     for (equation, says) in draft.equations.iter_mut().zip(says) {
@@ -32,15 +32,19 @@ pub(super) fn read(draft: &mut Draft) {
 }
 
 /// The unknown and what it equals, where an equation says no more than that.
-fn constant(draft: &mut Draft, equation: usize) -> Option<(VarId, ExprId)> {
+fn constant(draft: &mut DaeDraft, equation: usize) -> Option<(VarId, ExprId)> {
     let is = |v: VarId, role| draft.role(v) == role;
     match alias::simple_form(&draft.exprs, &draft.equations[equation])? {
-        Simple::Zero(v) if is(v, Role::Continuous) => Some((v, Exprs::ZERO)),
-        Simple::Equal(a, b) if is(a.variable, Role::Continuous) && is(b.variable, Role::Parameter) => {
+        AliasEquation::Zero(v) if is(v, SystemRole::Continuous) => Some((v, Exprs::ZERO)),
+        AliasEquation::Equal(a, b)
+            if is(a.variable, SystemRole::Continuous) && is(b.variable, SystemRole::Parameter) =>
+        {
             Some((a.variable, b.expression(&mut draft.exprs)))
         }
-        Simple::Equal(a, b) if is(a.variable, Role::Parameter) && is(b.variable, Role::Continuous) => {
-            let parameter = Signed { variable: a.variable, negated: b.negated };
+        AliasEquation::Equal(a, b)
+            if is(a.variable, SystemRole::Parameter) && is(b.variable, SystemRole::Continuous) =>
+        {
+            let parameter = SignedVariable { variable: a.variable, negated: b.negated };
             Some((b.variable, parameter.expression(&mut draft.exprs)))
         }
         _ => None,

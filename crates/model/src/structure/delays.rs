@@ -1,15 +1,15 @@
 //! `delay` becomes an input that the run itself records.
 
-use super::Delay;
-use super::draft::{Draft, Role, carried};
-use crate::flat::{Origin, Type, Variability};
+use super::DelayInput;
+use super::draft::{DaeDraft, SystemRole, carried};
+use crate::flat::{ElementOrigin, ScalarType, Variability};
 use bramah_expr::visit::Substitution;
-use bramah_expr::{ExprId, Node};
+use bramah_expr::{ExprId, ExprNode};
 
 /// Replaces every `delay` by an input.
-pub(super) fn extract(draft: &mut Draft) {
+pub(super) fn extract(draft: &mut DaeDraft) {
     let live = draft.live_nodes();
-    let any = |i: usize| matches!(draft.exprs.node(ExprId(i as u32)), Node::Delay(..));
+    let any = |i: usize| matches!(draft.exprs.node(ExprId(i as u32)), ExprNode::Delay(..));
     if !(0..live.len()).any(|i| live[i] && any(i)) {
         return;
     }
@@ -18,7 +18,7 @@ pub(super) fn extract(draft: &mut Draft) {
         let e = ExprId(i as u32);
         let image = match draft.exprs.node(e) {
             _ if !live => e,
-            Node::Delay(source, time) => input(draft, e, map[source.index()], map[time.index()]),
+            ExprNode::Delay(source, time) => input(draft, e, map[source.index()], map[time.index()]),
             _ => carried(&mut draft.exprs, e, &map),
         };
         map.push(image);
@@ -26,16 +26,16 @@ pub(super) fn extract(draft: &mut Draft) {
     draft.map_expressions(&map);
 }
 
-fn input(draft: &mut Draft, e: ExprId, source: ExprId, time: ExprId) -> ExprId {
+fn input(draft: &mut DaeDraft, e: ExprId, source: ExprId, time: ExprId) -> ExprId {
     let origin = origin(draft, e);
-    let variable = draft.make_variable(draft.text(e), Type::Real, Role::Input, origin);
+    let variable = draft.make_variable(draft.text(e), ScalarType::Real, SystemRole::Input, origin);
     draft.variables[variable.index()].variability = Variability::Continuous;
-    draft.delays.push(Delay { variable, source, time, origin });
+    draft.delays.push(DelayInput { variable, source, time, origin });
     draft.exprs.var(variable)
 }
 
 /// The first equation, condition or assertion that holds an expression.
-fn origin(draft: &Draft, e: ExprId) -> Origin {
+fn origin(draft: &DaeDraft, e: ExprId) -> ElementOrigin {
     let equations = draft.equations.iter().chain(&draft.initial_equations).map(|q| (vec![q.lhs, q.rhs], q.origin));
     let conditions = draft.whens.iter().flat_map(|w| w.branches.iter().map(|b| (b.conditions.clone(), w.origin)));
     let asserts = draft.asserts.iter().map(|a| (vec![a.condition], a.origin));
@@ -46,7 +46,7 @@ fn origin(draft: &Draft, e: ExprId) -> Origin {
 
 /// At the start nothing has been recorded, and a delayed value is the value itself: in the image of every expression the
 /// sources stand in the place of their inputs.
-pub(super) fn undelayed(draft: &mut Draft, map: &mut [ExprId]) {
+pub(super) fn undelayed(draft: &mut DaeDraft, map: &mut [ExprId]) {
     if draft.delays.is_empty() {
         return;
     }

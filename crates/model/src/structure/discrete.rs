@@ -1,17 +1,19 @@
 //! `when` clauses become discrete equations `v = if fires then value else pre(v)` and actions.
 
-use super::draft::{Draft, Role, RowKind};
-use super::{Action, ActionKind};
-use crate::flat::{Equation, Origin, OriginKind, Type, Variability, When, WhenAction, WhenBranch};
-use bramah_expr::visit::Dependencies;
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use super::draft::{DaeDraft, EquationRole, SystemRole};
+use super::{EventAction, EventActionKind};
+use crate::flat::{
+    ElementOrigin, FlatEquation, OriginKind, ScalarType, Variability, WhenAction, WhenBranch, WhenClause,
+};
+use bramah_expr::visit::LeafDependencies;
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use petgraph::unionfind::UnionFind;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Translates all `when` clauses, which leaves none.
-pub(super) fn translate_whens(draft: &mut Draft) {
+pub(super) fn translate_whens(draft: &mut DaeDraft) {
     let whens = std::mem::take(&mut draft.whens);
-    let mut conditions = Conditions::default();
+    let mut conditions = ConditionVariables::default();
     for when in &whens {
         let fires: Vec<ExprId> = when.branches.iter().map(|b| conditions.fires(draft, b, when.origin)).collect();
         assign_variables(draft, when, &fires);
@@ -21,17 +23,17 @@ pub(super) fn translate_whens(draft: &mut Draft) {
 
 /// The condition variables made so far, by expression.
 #[derive(Default)]
-struct Conditions {
+struct ConditionVariables {
     made: FxHashMap<ExprId, VarId>,
 }
 
-impl Conditions {
+impl ConditionVariables {
     /// True in the event iteration in which one of the branch's conditions becomes true.
-    fn fires(&mut self, draft: &mut Draft, branch: &WhenBranch, origin: Origin) -> ExprId {
+    fn fires(&mut self, draft: &mut DaeDraft, branch: &WhenBranch, origin: ElementOrigin) -> ExprId {
         let mut fires = Exprs::ZERO;
         for &condition in &branch.conditions {
             let one = match draft.exprs.node(condition) {
-                Node::Initial => condition,
+                ExprNode::Initial => condition,
                 _ => self.becomes_true(draft, condition, origin),
             };
             fires = draft.exprs.or(fires, one);
@@ -40,37 +42,37 @@ impl Conditions {
     }
 
     /// `not initial() and c and not pre(c)`
-    fn becomes_true(&mut self, draft: &mut Draft, condition: ExprId, origin: Origin) -> ExprId {
+    fn becomes_true(&mut self, draft: &mut DaeDraft, condition: ExprId, origin: ElementOrigin) -> ExprId {
         let v = self.variable(draft, condition, origin);
         let pool = &mut draft.exprs;
-        let (now, before, initial) = (pool.var(v), pool.pre(v), pool.intern(Node::Initial));
+        let (now, before, initial) = (pool.var(v), pool.pre(v), pool.intern(ExprNode::Initial));
         let (not_before, running) = (pool.not(before), pool.not(initial));
         let edge = pool.and(now, not_before);
         pool.and(running, edge)
     }
 
     /// The discrete variable that is the condition, or one made for it.
-    fn variable(&mut self, draft: &mut Draft, condition: ExprId, origin: Origin) -> VarId {
-        if let Node::Var(v) = draft.exprs.node(condition)
-            && matches!(draft.role(v), Role::Discrete | Role::Sample)
+    fn variable(&mut self, draft: &mut DaeDraft, condition: ExprId, origin: ElementOrigin) -> VarId {
+        if let ExprNode::Var(v) = draft.exprs.node(condition)
+            && matches!(draft.role(v), SystemRole::Discrete | SystemRole::Sample)
         {
             return v;
         }
         if let Some(&v) = self.made.get(&condition) {
             return v;
         }
-        let origin = Origin { kind: OriginKind::WhenCondition, ..origin };
+        let origin = ElementOrigin { kind: OriginKind::WhenCondition, ..origin };
         let name = draft.text(condition);
-        let v = draft.make_variable(name, Type::Boolean, Role::Discrete, origin);
+        let v = draft.make_variable(name, ScalarType::Boolean, SystemRole::Discrete, origin);
         let lhs = draft.exprs.var(v);
-        draft.add_equation(Equation { lhs, rhs: condition, origin }, RowKind::Definition);
+        draft.add_equation(FlatEquation { lhs, rhs: condition, origin }, EquationRole::Definition);
         self.made.insert(condition, v);
         v
     }
 }
 
 /// One equation for each variable that the clause assigns, in order of first appearance.
-fn assign_variables(draft: &mut Draft, when: &When, fires: &[ExprId]) {
+fn assign_variables(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
     let mut done: Vec<VarId> = Vec::new();
     for action in when.branches.iter().flat_map(|b| &b.actions) {
         if let WhenAction::Assign { variable, origin, .. } = action
@@ -79,13 +81,13 @@ fn assign_variables(draft: &mut Draft, when: &When, fires: &[ExprId]) {
             done.push(*variable);
             let rhs = chosen_value(draft, when, fires, *variable);
             let lhs = draft.exprs.var(*variable);
-            draft.add_equation(Equation { lhs, rhs, origin: *origin }, RowKind::Definition);
+            draft.add_equation(FlatEquation { lhs, rhs, origin: *origin }, EquationRole::Definition);
         }
     }
 }
 
 /// The value by the first branch that fires; a branch that does not assign the variable leaves it.
-fn chosen_value(draft: &mut Draft, when: &When, fires: &[ExprId], variable: VarId) -> ExprId {
+fn chosen_value(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId], variable: VarId) -> ExprId {
     let before = draft.exprs.pre(variable);
     let mut value = before;
     for (branch, &fires) in when.branches.iter().zip(fires).rev() {
@@ -99,7 +101,7 @@ fn chosen_value(draft: &mut Draft, when: &When, fires: &[ExprId], variable: VarI
 }
 
 /// `reinit`, `assert` and `terminate`, each happening when its branch is the first that fires.
-fn add_actions(draft: &mut Draft, when: &When, fires: &[ExprId]) {
+fn add_actions(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
     let mut earlier = Exprs::ZERO;
     for (branch, &fires) in when.branches.iter().zip(fires) {
         let none = draft.exprs.not(earlier);
@@ -109,44 +111,44 @@ fn add_actions(draft: &mut Draft, when: &When, fires: &[ExprId]) {
             let (kind, guard, origin) = match action {
                 WhenAction::Assign { .. } => continue,
                 WhenAction::Reinit { variable, value, guard, origin } => {
-                    (ActionKind::Reinit(*variable, *value), *guard, *origin)
+                    (EventActionKind::Reinit(*variable, *value), *guard, *origin)
                 }
-                WhenAction::Assert(assert) => (ActionKind::Assert(assert.clone()), Exprs::ONE, assert.origin),
+                WhenAction::Assert(assert) => (EventActionKind::Assert(assert.clone()), Exprs::ONE, assert.origin),
                 WhenAction::Terminate { message, guard, origin } => {
-                    (ActionKind::Terminate(message.clone()), *guard, *origin)
+                    (EventActionKind::Terminate(message.clone()), *guard, *origin)
                 }
             };
             let fires = draft.exprs.and(first, guard);
-            draft.actions.push(Action { fires, kind, origin });
+            draft.actions.push(EventAction { fires, kind, origin });
         }
     }
 }
 
 /// The variable of `v` or `pre(v)`, where it is a discrete unknown.
-fn discrete_atom(draft: &Draft, e: ExprId) -> Option<VarId> {
+fn discrete_atom(draft: &DaeDraft, e: ExprId) -> Option<VarId> {
     match draft.exprs.node(e) {
-        Node::Var(v) | Node::Pre(v) if draft.role(v) == Role::Discrete => Some(v),
+        ExprNode::Var(v) | ExprNode::Pre(v) if draft.role(v) == SystemRole::Discrete => Some(v),
         _ => None,
     }
 }
 
 /// Whether both sides of an equation are such.
-fn joins_atoms(draft: &Draft, q: &Equation) -> bool {
+fn joins_atoms(draft: &DaeDraft, q: &FlatEquation) -> bool {
     [q.lhs, q.rhs].iter().all(|&e| discrete_atom(draft, e).is_some())
 }
 
 /// Whether nothing but parameters and values before events is read.
-fn of_parameters(draft: &Draft, found: &Dependencies) -> bool {
-    found.ders.is_empty() && !found.time && found.vars.iter().all(|&u| draft.role(u) == Role::Parameter)
+fn of_parameters(draft: &DaeDraft, found: &LeafDependencies) -> bool {
+    found.ders.is_empty() && !found.time && found.vars.iter().all(|&u| draft.role(u) == SystemRole::Parameter)
 }
 
 /// `a = value` among the initial equations, where the model says `a = pre(v)`, is the start of `v` (MLS 8.6).
-fn absorb_through_equals(draft: &mut Draft) {
-    let known = |draft: &Draft, e: ExprId| {
+fn absorb_through_equals(draft: &mut DaeDraft) {
+    let known = |draft: &DaeDraft, e: ExprId| {
         let found = draft.exprs.dependencies(&[e]);
         found.pres.is_empty() && of_parameters(draft, &found)
     };
-    let given = |draft: &Draft, q: &Equation| {
+    let given = |draft: &DaeDraft, q: &FlatEquation| {
         let sides = [(q.lhs, q.rhs), (q.rhs, q.lhs)];
         sides.into_iter().find(|&(a, value)| discrete_atom(draft, a).is_some() && known(draft, value))
     };
@@ -154,14 +156,14 @@ fn absorb_through_equals(draft: &mut Draft) {
         return;
     }
     let all = draft.equations.iter().chain(&draft.initial_equations);
-    let joining: Vec<Equation> = all.filter(|q| joins_atoms(draft, q)).copied().collect();
+    let joining: Vec<FlatEquation> = all.filter(|q| joins_atoms(draft, q)).copied().collect();
     let mut equals = UnionFind::new(draft.exprs.len());
     for q in &joining {
         equals.union(q.lhs.index(), q.rhs.index());
     }
     let mut before: FxHashMap<usize, Vec<VarId>> = FxHashMap::default();
     for e in joining.iter().flat_map(|q| [q.lhs, q.rhs]) {
-        if let Node::Pre(v) = draft.exprs.node(e) {
+        if let ExprNode::Pre(v) = draft.exprs.node(e) {
             before.entry(equals.find(e.index())).or_default().push(v);
         }
     }
@@ -188,7 +190,7 @@ fn absorb_through_equals(draft: &mut Draft) {
 }
 
 /// `pre(v) = value` among the initial equations fixes the start of `v`, where the value is known before the run.
-pub(super) fn absorb_initial_pres(draft: &mut Draft) {
+pub(super) fn absorb_initial_pres(draft: &mut DaeDraft) {
     absorb_through_equals(draft);
     let equations = std::mem::take(&mut draft.initial_equations);
     for equation in equations {
@@ -206,31 +208,33 @@ pub(super) fn absorb_initial_pres(draft: &mut Draft) {
 }
 
 /// `pre(v) = value` with a value that is only found at the start: an unknown of it stands for `pre(v)` (MLS 8.6).
-fn with_value_before(draft: &mut Draft, equation: Equation) -> Equation {
+fn with_value_before(draft: &mut DaeDraft, equation: FlatEquation) -> FlatEquation {
     let sides = [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)];
     let found = sides.into_iter().find_map(|(e, value)| match draft.exprs.node(e) {
-        Node::Pre(v) if draft.role(v) == Role::Discrete && !draft.variables[v.index()].fixed => Some((v, value)),
+        ExprNode::Pre(v) if draft.role(v) == SystemRole::Discrete && !draft.variables[v.index()].fixed => {
+            Some((v, value))
+        }
         _ => None,
     });
     let Some((v, value)) = found.filter(|(v, _)| draft.before_start.iter().all(|(known, _)| known != v)) else {
         return equation;
     };
     let (name, ty) = (format!("pre({})", draft.variables[v.index()].name), draft.variables[v.index()].ty);
-    let before = draft.make_variable(name, ty, Role::FreeParameter, equation.origin);
+    let before = draft.make_variable(name, ty, SystemRole::FreeParameter, equation.origin);
     draft.variables[before.index()].variability = Variability::Parameter;
     draft.before_start.push((v, before));
-    Equation { lhs: draft.exprs.var(before), rhs: value, ..equation }
+    FlatEquation { lhs: draft.exprs.var(before), rhs: value, ..equation }
 }
 
 /// The variable and its start, if the equation is one of those.
-fn given_pre(draft: &mut Draft, equation: &Equation) -> Option<(VarId, ExprId)> {
+fn given_pre(draft: &mut DaeDraft, equation: &FlatEquation) -> Option<(VarId, ExprId)> {
     let (v, value) = match (draft.exprs.node(equation.lhs), draft.exprs.node(equation.rhs)) {
-        (Node::Pre(v), _) => (v, equation.rhs),
-        (_, Node::Pre(v)) => (v, equation.lhs),
+        (ExprNode::Pre(v), _) => (v, equation.rhs),
+        (_, ExprNode::Pre(v)) => (v, equation.lhs),
         _ => return None,
     };
     let found = draft.exprs.dependencies(&[value]);
-    if !of_parameters(draft, &found) || draft.role(v) != Role::Discrete {
+    if !of_parameters(draft, &found) || draft.role(v) != SystemRole::Discrete {
         return None;
     }
     let mut replacements = Vec::with_capacity(found.pres.len());
@@ -247,16 +251,16 @@ fn given_pre(draft: &mut Draft, equation: &Equation) -> Option<(VarId, ExprId)> 
 ///
 /// A lone discrete unknown on the left makes the equation a discrete one, and so does one on the right when the left
 /// holds no continuous unknown. What a `when` assigns is determined there and nowhere else.
-pub(super) fn classify(draft: &mut Draft) {
+pub(super) fn classify(draft: &mut DaeDraft) {
     for i in 0..draft.equations.len() {
-        if draft.kinds[i] == RowKind::Continuous && is_discrete(draft, &draft.equations[i]) {
-            draft.kinds[i] = RowKind::Discrete;
+        if draft.kinds[i] == EquationRole::Continuous && is_discrete(draft, &draft.equations[i]) {
+            draft.kinds[i] = EquationRole::Discrete;
         }
     }
 }
 
 /// Whether an equation determines a discrete unknown.
-pub(super) fn is_discrete(draft: &Draft, equation: &Equation) -> bool {
+pub(super) fn is_discrete(draft: &DaeDraft, equation: &FlatEquation) -> bool {
     let [left, right] = [equation.lhs, equation.rhs].map(|e| lone_discrete(draft, e));
     if left.is_some_and(|v| may_solve(draft, v)) {
         return true;
@@ -269,30 +273,30 @@ pub(super) fn is_discrete(draft: &Draft, equation: &Equation) -> bool {
 }
 
 /// Whether an expression depends on a continuous unknown.
-pub(super) fn has_continuous(draft: &Draft, e: ExprId) -> bool {
+pub(super) fn has_continuous(draft: &DaeDraft, e: ExprId) -> bool {
     let found = draft.exprs.dependencies(&[e]);
-    !found.ders.is_empty() || found.vars.iter().any(|&v| draft.role(v) == Role::Continuous)
+    !found.ders.is_empty() || found.vars.iter().any(|&v| draft.role(v) == SystemRole::Continuous)
 }
 
 /// Whether equations outside `when` may determine a discrete unknown.
-pub(super) fn may_solve(draft: &Draft, v: VarId) -> bool {
+pub(super) fn may_solve(draft: &DaeDraft, v: VarId) -> bool {
     !draft.when_assigned[v.index()]
 }
 
 /// The discrete unknown that an expression is.
-pub(super) fn lone_discrete(draft: &Draft, e: ExprId) -> Option<VarId> {
+pub(super) fn lone_discrete(draft: &DaeDraft, e: ExprId) -> Option<VarId> {
     match draft.exprs.node(e) {
-        Node::Var(v) if draft.role(v) == Role::Discrete => Some(v),
+        ExprNode::Var(v) if draft.role(v) == SystemRole::Discrete => Some(v),
         _ => None,
     }
 }
 
 /// The discrete unknowns that a row may be solved for: none for a continuous one.
-pub(super) fn lone_unknowns(draft: &Draft, equation: &Equation, kind: RowKind) -> Vec<VarId> {
+pub(super) fn lone_unknowns(draft: &DaeDraft, equation: &FlatEquation, kind: EquationRole) -> Vec<VarId> {
     match kind {
-        RowKind::Continuous => Vec::new(),
-        RowKind::Definition => lone_discrete(draft, equation.lhs).into_iter().collect(),
-        RowKind::Discrete => {
+        EquationRole::Continuous => Vec::new(),
+        EquationRole::Definition => lone_discrete(draft, equation.lhs).into_iter().collect(),
+        EquationRole::Discrete => {
             let sides = [equation.lhs, equation.rhs];
             sides.iter().filter_map(|&e| lone_discrete(draft, e)).filter(|&v| may_solve(draft, v)).collect()
         }

@@ -1,12 +1,12 @@
 //! The system while it is being analysed: one pool, all variables and equations, and what is known about them so far.
 
-use super::{Action, ActionKind, Crossing, CrossingKind, Delay, Sample};
-use crate::flat::{self, FlatModel, Type, Variability};
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use super::{CrossingKind, DelayInput, EventAction, EventActionKind, SampleEvent, ZeroCrossing};
+use crate::flat::{self, FlatModel, ScalarType, Variability};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 
 /// What a variable is to the sorted systems.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Role {
+pub(super) enum SystemRole {
     /// A constant, or a parameter whose value is known before the run.
     Parameter,
     /// A parameter found at initialization.
@@ -25,7 +25,7 @@ pub(super) enum Role {
 
 /// Which unknowns an equation may be solved for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum RowKind {
+pub(super) enum EquationRole {
     /// Any continuous unknown.
     Continuous,
     /// A lone discrete unknown on either side.
@@ -36,12 +36,12 @@ pub(super) enum RowKind {
 
 /// A variable or its negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Signed {
+pub(super) struct SignedVariable {
     pub variable: VarId,
     pub negated: bool,
 }
 
-impl Signed {
+impl SignedVariable {
     /// The variable, or its negative.
     pub fn expression(self, pool: &mut Exprs) -> ExprId {
         let e = pool.var(self.variable);
@@ -51,33 +51,33 @@ impl Signed {
 
 /// The system in the making.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Draft {
+pub(super) struct DaeDraft {
     pub exprs: Exprs,
-    pub variables: Vec<flat::Variable>,
-    pub roles: Vec<Role>,
+    pub variables: Vec<flat::FlatVariable>,
+    pub roles: Vec<SystemRole>,
     /// Assigned in a `when`, so that no other equation can determine it.
     pub when_assigned: Vec<bool>,
     /// The variable that is the derivative of a variable, if there is one.
-    pub derivative: Vec<Option<Signed>>,
-    pub equations: Vec<flat::Equation>,
+    pub derivative: Vec<Option<SignedVariable>>,
+    pub equations: Vec<flat::FlatEquation>,
     /// Parallel to `equations`.
-    pub kinds: Vec<RowKind>,
-    pub initial_equations: Vec<flat::Equation>,
+    pub kinds: Vec<EquationRole>,
+    pub initial_equations: Vec<flat::FlatEquation>,
     /// Discrete unknowns whose values before the start initial equations determine, with the unknowns that these are.
     pub before_start: Vec<(VarId, VarId)>,
-    pub whens: Vec<flat::When>,
-    pub asserts: Vec<flat::Assert>,
-    pub conserved: Vec<flat::Conserved>,
-    pub crossings: Vec<Crossing>,
-    pub samples: Vec<Sample>,
-    pub delays: Vec<Delay>,
-    pub actions: Vec<Action>,
+    pub whens: Vec<flat::WhenClause>,
+    pub asserts: Vec<flat::FlatAssertion>,
+    pub conserved: Vec<flat::ConservationDeclaration>,
+    pub crossings: Vec<ZeroCrossing>,
+    pub samples: Vec<SampleEvent>,
+    pub delays: Vec<DelayInput>,
+    pub actions: Vec<EventAction>,
     pub instances: Vec<flat::InstanceInfo>,
     /// Equations that must hold at the start although they determine nothing there.
-    pub initial_checks: Vec<flat::Equation>,
+    pub initial_checks: Vec<flat::FlatEquation>,
 }
 
-impl Draft {
+impl DaeDraft {
     /// The flat model with every variable's role, equations not yet classified.
     pub fn new(flat: &FlatModel) -> Self {
         let mut when_assigned = vec![false; flat.variables.len()];
@@ -86,27 +86,27 @@ impl Draft {
                 when_assigned[variable.index()] = true;
             }
         }
-        let roles: Vec<Role> =
+        let roles: Vec<SystemRole> =
             flat.variables.iter().zip(&when_assigned).map(|(v, &assigned)| role(v, assigned)).collect();
         let mut variables = flat.variables.clone();
-        for (v, _) in variables.iter_mut().zip(&roles).filter(|(_, role)| **role == Role::Discrete) {
+        for (v, _) in variables.iter_mut().zip(&roles).filter(|(_, role)| **role == SystemRole::Discrete) {
             v.variability = Variability::Discrete;
         }
-        let mut draft = Draft {
+        let mut draft = DaeDraft {
             exprs: flat.exprs.clone(),
             variables,
             roles,
             when_assigned,
             derivative: vec![None; flat.variables.len()],
             equations: flat.equations.clone(),
-            kinds: vec![RowKind::Continuous; flat.equations.len()],
+            kinds: vec![EquationRole::Continuous; flat.equations.len()],
             initial_equations: flat.initial_equations.clone(),
             before_start: Vec::new(),
             whens: flat.whens.clone(),
             asserts: flat.asserts.clone(),
             conserved: flat.conserved.clone(),
             instances: flat.instances.clone(),
-            ..Draft::default()
+            ..DaeDraft::default()
         };
         draft.let_continuous_be_their_left_limit();
         draft
@@ -115,39 +115,45 @@ impl Draft {
     /// `pre` of a variable that no `when` assigns is the variable: it does not move while an event is being handled.
     fn let_continuous_be_their_left_limit(&mut self) {
         let roles = self.roles.clone();
-        let continuous = |v: VarId| roles[v.index()] == Role::Continuous;
+        let continuous = |v: VarId| roles[v.index()] == SystemRole::Continuous;
         let mut nodes = (0..self.exprs.len() as u32).map(|i| self.exprs.node(ExprId(i)));
-        if !nodes.any(|node| matches!(node, Node::Pre(v) if continuous(v))) {
+        if !nodes.any(|node| matches!(node, ExprNode::Pre(v) if continuous(v))) {
             return;
         }
         let map = self.rewritten(|pool, node| match node {
-            Node::Pre(v) if continuous(v) => Some(pool.var(v)),
+            ExprNode::Pre(v) if continuous(v) => Some(pool.var(v)),
             _ => None,
         });
         self.map_expressions(&map);
     }
 
     /// The role of a variable.
-    pub fn role(&self, v: VarId) -> Role {
+    pub fn role(&self, v: VarId) -> SystemRole {
         self.roles[v.index()]
     }
 
     /// All variables of a role, in order.
-    pub fn with_role(&self, role: Role) -> Vec<VarId> {
+    pub fn with_role(&self, role: SystemRole) -> Vec<VarId> {
         (0..self.variables.len()).filter(|&i| self.roles[i] == role).map(|i| VarId(i as u32)).collect()
     }
 
     /// Adds a variable made by the compiler.
-    pub fn make_variable(&mut self, name: String, ty: Type, role: Role, origin: flat::Origin) -> VarId {
-        let variability = if role == Role::Continuous { Variability::Continuous } else { Variability::Discrete };
+    pub fn make_variable(
+        &mut self,
+        name: String,
+        ty: ScalarType,
+        role: SystemRole,
+        origin: flat::ElementOrigin,
+    ) -> VarId {
+        let variability = if role == SystemRole::Continuous { Variability::Continuous } else { Variability::Discrete };
         // a variable is large: twice as many places as are needed would be most of what a model takes
         if self.variables.len() == self.variables.capacity() {
             self.variables.reserve_exact(self.variables.len() / 8 + 64);
         }
-        self.variables.push(flat::Variable {
+        self.variables.push(flat::FlatVariable {
             hidden: true,
             unwanted: true,
-            ..flat::Variable::plain(name, ty, variability, origin)
+            ..flat::FlatVariable::plain(name, ty, variability, origin)
         });
         self.roles.push(role);
         self.when_assigned.push(false);
@@ -161,7 +167,7 @@ impl Draft {
     }
 
     /// Adds an equation.
-    pub fn add_equation(&mut self, equation: flat::Equation, kind: RowKind) {
+    pub fn add_equation(&mut self, equation: flat::FlatEquation, kind: EquationRole) {
         self.equations.push(equation);
         self.kinds.push(kind);
     }
@@ -228,7 +234,7 @@ impl Draft {
     }
 
     /// The image of every live node of the pool when `leaf` replaces some of them, arguments first.
-    pub fn rewritten(&mut self, mut leaf: impl FnMut(&mut Exprs, Node) -> Option<ExprId>) -> Vec<ExprId> {
+    pub fn rewritten(&mut self, mut leaf: impl FnMut(&mut Exprs, ExprNode) -> Option<ExprId>) -> Vec<ExprId> {
         let live = self.live_nodes();
         let mut map = Vec::with_capacity(live.len());
         for i in 0..live.len() as u32 {
@@ -255,19 +261,19 @@ pub(super) fn carried(pool: &mut Exprs, e: ExprId, map: &[ExprId]) -> ExprId {
     pool.with_operands(e, |a| map[a.index()])
 }
 
-fn role(v: &flat::Variable, when_assigned: bool) -> Role {
+fn role(v: &flat::FlatVariable, when_assigned: bool) -> SystemRole {
     match v.variability {
-        Variability::Constant => Role::Parameter,
-        Variability::Parameter if v.fixed || v.binding.is_some() && v.start.is_none() => Role::Parameter,
-        Variability::Parameter => Role::FreeParameter,
-        _ if v.input => Role::Input,
-        Variability::Discrete => Role::Discrete,
-        Variability::Continuous if v.ty != Type::Real || when_assigned => Role::Discrete,
-        Variability::Continuous => Role::Continuous,
+        Variability::Constant => SystemRole::Parameter,
+        Variability::Parameter if v.fixed || v.binding.is_some() && v.start.is_none() => SystemRole::Parameter,
+        Variability::Parameter => SystemRole::FreeParameter,
+        _ if v.input => SystemRole::Input,
+        Variability::Discrete => SystemRole::Discrete,
+        Variability::Continuous if v.ty != ScalarType::Real || when_assigned => SystemRole::Discrete,
+        Variability::Continuous => SystemRole::Continuous,
     }
 }
 
-fn each_of_message(message: &mut flat::Message, visit: &mut impl FnMut(&mut ExprId)) {
+fn each_of_message(message: &mut flat::MessageTemplate, visit: &mut impl FnMut(&mut ExprId)) {
     for part in &mut message.parts {
         if let flat::MessagePart::Value(e, _) = part {
             visit(e);
@@ -275,12 +281,12 @@ fn each_of_message(message: &mut flat::Message, visit: &mut impl FnMut(&mut Expr
     }
 }
 
-fn each_of_assert(assert: &mut flat::Assert, visit: &mut impl FnMut(&mut ExprId)) {
+fn each_of_assert(assert: &mut flat::FlatAssertion, visit: &mut impl FnMut(&mut ExprId)) {
     visit(&mut assert.condition);
     each_of_message(&mut assert.message, visit);
 }
 
-fn each_of_crossing(crossing: &mut Crossing, visit: &mut impl FnMut(&mut ExprId)) {
+fn each_of_crossing(crossing: &mut ZeroCrossing, visit: &mut impl FnMut(&mut ExprId)) {
     match &mut crossing.kind {
         CrossingKind::Relation(_, a, b) => {
             visit(a);
@@ -290,11 +296,11 @@ fn each_of_crossing(crossing: &mut Crossing, visit: &mut impl FnMut(&mut ExprId)
     }
 }
 
-fn each_of_action(action: &mut Action, visit: &mut impl FnMut(&mut ExprId)) {
+fn each_of_action(action: &mut EventAction, visit: &mut impl FnMut(&mut ExprId)) {
     visit(&mut action.fires);
     match &mut action.kind {
-        ActionKind::Reinit(_, value) => visit(value),
-        ActionKind::Terminate(message) => each_of_message(message, visit),
-        ActionKind::Assert(assert) => each_of_assert(assert, visit),
+        EventActionKind::Reinit(_, value) => visit(value),
+        EventActionKind::Terminate(message) => each_of_message(message, visit),
+        EventActionKind::Assert(assert) => each_of_assert(assert, visit),
     }
 }

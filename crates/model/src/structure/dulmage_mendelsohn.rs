@@ -2,12 +2,12 @@
 //!
 //! Both parts are the same for every maximum matching, so messages do not depend on the order of declarations.
 
-use super::incidence::{Incidence, NONE};
+use super::incidence::{IncidenceMatrix, NONE};
 use super::matching::Matching;
 
 /// Some equations with some unknowns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Part {
+pub(super) struct DecompositionPart {
     /// Equations, ascending.
     pub rows: Vec<u32>,
     /// Unknowns, ascending.
@@ -16,20 +16,20 @@ pub(super) struct Part {
 
 /// The coarse decomposition; what is in neither part is well determined.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Decomposition {
+pub(super) struct CoarseDecomposition {
     /// More equations than unknowns.
-    pub over: Part,
+    pub over: DecompositionPart,
     /// More unknowns than equations.
-    pub under: Part,
+    pub under: DecompositionPart,
 }
 
 /// Splits a system with a maximum matching.
-pub(super) fn decompose(incidence: &Incidence, matching: &Matching) -> Decomposition {
-    Decomposition { over: over(incidence, matching), under: under(incidence, matching) }
+pub(super) fn decompose(incidence: &IncidenceMatrix, matching: &Matching) -> CoarseDecomposition {
+    CoarseDecomposition { over: over(incidence, matching), under: under(incidence, matching) }
 }
 
 /// Everything reachable from unmatched rows: row to any of its columns, column to its matched row.
-fn over(incidence: &Incidence, matching: &Matching) -> Part {
+fn over(incidence: &IncidenceMatrix, matching: &Matching) -> DecompositionPart {
     let mut row_seen = vec![false; matching.column_of.len()];
     let mut column_seen = vec![false; matching.row_of.len()];
     let mut stack: Vec<u32> = unmatched(&matching.column_of);
@@ -45,11 +45,11 @@ fn over(incidence: &Incidence, matching: &Matching) -> Part {
             }
         }
     }
-    Part { rows: marked(&row_seen), columns: marked(&column_seen) }
+    DecompositionPart { rows: marked(&row_seen), columns: marked(&column_seen) }
 }
 
 /// Everything reachable from unmatched columns: column to any of its rows, row to its matched column.
-fn under(incidence: &Incidence, matching: &Matching) -> Part {
+fn under(incidence: &IncidenceMatrix, matching: &Matching) -> DecompositionPart {
     let mut row_seen = vec![false; matching.column_of.len()];
     let mut column_seen = vec![false; matching.row_of.len()];
     let (starts, rows) = incidence.transposed(matching.row_of.len());
@@ -66,7 +66,7 @@ fn under(incidence: &Incidence, matching: &Matching) -> Part {
             }
         }
     }
-    Part { rows: marked(&row_seen), columns: marked(&column_seen) }
+    DecompositionPart { rows: marked(&row_seen), columns: marked(&column_seen) }
 }
 
 fn unmatched(partners: &[u32]) -> Vec<u32> {
@@ -86,10 +86,10 @@ mod tests {
     #[test]
     fn parts_of_a_small_system() {
         // Unknown 0 twice, unknowns 1 and 2 share one equation, unknown 3 is fine.
-        let incidence = Incidence::of(&[vec![0], vec![0], vec![1, 2], vec![0, 3]]);
+        let incidence = IncidenceMatrix::of(&[vec![0], vec![0], vec![1, 2], vec![0, 3]]);
         let found = decompose(&incidence, &maximum(&incidence, 4));
-        assert_eq!(found.over, Part { rows: vec![0, 1], columns: vec![0] });
-        assert_eq!(found.under, Part { rows: vec![2], columns: vec![1, 2] });
+        assert_eq!(found.over, DecompositionPart { rows: vec![0, 1], columns: vec![0] });
+        assert_eq!(found.under, DecompositionPart { rows: vec![2], columns: vec![1, 2] });
     }
 
     proptest! {
@@ -105,18 +105,18 @@ mod tests {
             let relabelled: Vec<Vec<u32>> =
                 order.iter().map(|&r| rows[r].iter().map(|c| (c + turn) % 8).collect()).collect();
             let parts = |rows: &[Vec<u32>]| {
-                let incidence = Incidence::of(rows);
+                let incidence = IncidenceMatrix::of(rows);
                 decompose(&incidence, &maximum(&incidence, 8))
             };
             let (here, there) = (parts(&rows), parts(&relabelled));
-            let back = |part: &Part| {
+            let back = |part: &DecompositionPart| {
                 let mut rows: Vec<u32> = part.rows.iter().map(|&r| order[r as usize] as u32).collect();
                 let mut columns: Vec<u32> = part.columns.iter().map(|c| (c + 8 - turn) % 8).collect();
                 rows.sort_unstable();
                 columns.sort_unstable();
-                Part { rows, columns }
+                DecompositionPart { rows, columns }
             };
-            prop_assert_eq!(here, Decomposition { over: back(&there.over), under: back(&there.under) });
+            prop_assert_eq!(here, CoarseDecomposition { over: back(&there.over), under: back(&there.under) });
         }
     }
 }

@@ -5,32 +5,37 @@
 //! chosen by elimination: columns that should rather not be states are offered first, and among equals the largest
 //! pivot wins.
 
-use super::draft::Draft;
+use super::draft::DaeDraft;
 use super::incidence::NONE;
-use super::pantelides::Reduction;
-use super::{Selection, StateChoice};
+use super::pantelides::IndexReduction;
+use super::{StateChoice, StateSelection};
 use crate::flat::StateSelect;
 use bramah_expr::differentiate::Differentiator;
-use bramah_expr::eval::Evaluation;
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use bramah_expr::eval::EvaluationCache;
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::FxHashMap;
 
 /// What came out.
 #[derive(Debug, Default)]
-pub(super) struct Choice {
+pub(super) struct DummyChoice {
     /// Columns that are dummies: derivatives that are not integrated.
     pub dummies: Vec<u32>,
     /// Groups among which another choice may become necessary.
-    pub selections: Vec<Selection>,
+    pub selections: Vec<StateSelection>,
 }
 
 /// Chooses the dummies of a reduced system.
-pub(super) fn select(draft: &mut Draft, reduction: &Reduction, parameters: &[f64], preferred: &StateChoice) -> Choice {
-    let mut choice = Choice::default();
+pub(super) fn select(
+    draft: &mut DaeDraft,
+    reduction: &IndexReduction,
+    parameters: &[f64],
+    preferred: &StateChoice,
+) -> DummyChoice {
+    let mut choice = DummyChoice::default();
     if reduction.is_trivial() {
         return choice;
     }
-    let mut level = Level::highest(draft, reduction);
+    let mut level = DerivativeLevel::highest(draft, reduction);
     while !level.rows.is_empty() {
         let dummies = level.solve(draft, reduction, parameters, preferred, &mut choice.selections);
         choice.dummies.extend_from_slice(&dummies);
@@ -41,21 +46,21 @@ pub(super) fn select(draft: &mut Draft, reduction: &Reduction, parameters: &[f64
 }
 
 /// The differentiated equations of one level, with the derivatives of them that may become dummies.
-struct Level {
-    rows: Vec<Row>,
+struct DerivativeLevel {
+    rows: Vec<LevelRow>,
 }
 
 /// A differentiated equation: its Jacobian entries do not change from level to level.
 #[derive(Clone, Debug)]
-struct Row {
+struct LevelRow {
     /// The row of the reduction at this level.
     row: u32,
     /// Columns of this level with the partial derivatives by them.
     entries: Vec<(u32, ExprId)>,
 }
 
-impl Level {
-    fn highest(draft: &mut Draft, reduction: &Reduction) -> Level {
+impl DerivativeLevel {
+    fn highest(draft: &mut DaeDraft, reduction: &IndexReduction) -> DerivativeLevel {
         let mut by_leaf: FxHashMap<u32, Differentiator> = FxHashMap::default();
         let mut rows = Vec::new();
         for row in 0..reduction.equations.len() as u32 {
@@ -73,13 +78,13 @@ impl Level {
                 entries.push((c, by.derive(&mut draft.exprs, residual)));
             }
             entries.retain(|&(_, e)| e != Exprs::ZERO);
-            rows.push(Row { row, entries });
+            rows.push(LevelRow { row, entries });
         }
-        Level { rows }
+        DerivativeLevel { rows }
     }
 
     /// The level below: predecessors that are themselves derivatives, with the integrals of the dummies.
-    fn below(&self, reduction: &Reduction, dummies: &[u32]) -> Level {
+    fn below(&self, reduction: &IndexReduction, dummies: &[u32]) -> DerivativeLevel {
         let is_dummy: rustc_hash::FxHashSet<u32> = dummies.iter().copied().collect();
         let mut rows = Vec::new();
         for row in &self.rows {
@@ -91,23 +96,23 @@ impl Level {
             let entries = dummies
                 .map(|&(c, e)| (reduction.columns[c as usize].integral, e))
                 .filter(|&(c, _)| reduction.columns[c as usize].integral != NONE);
-            rows.push(Row { row: lower, entries: entries.collect() });
+            rows.push(LevelRow { row: lower, entries: entries.collect() });
         }
-        Level { rows }
+        DerivativeLevel { rows }
     }
 
     /// As many dummies as rows, group by group of rows that share columns.
     fn solve(
         &self,
-        draft: &mut Draft,
-        reduction: &Reduction,
+        draft: &mut DaeDraft,
+        reduction: &IndexReduction,
         parameters: &[f64],
         preferred: &StateChoice,
-        selections: &mut Vec<Selection>,
+        selections: &mut Vec<StateSelection>,
     ) -> Vec<u32> {
         let mut all = Vec::new();
         for group in self.groups() {
-            let rows: Vec<&Row> = group.iter().map(|&i| &self.rows[i as usize]).collect();
+            let rows: Vec<&LevelRow> = group.iter().map(|&i| &self.rows[i as usize]).collect();
             let order = candidates(draft, reduction, &rows, preferred);
             let dummies = eliminate(draft, &rows, &order, parameters);
             selections.extend(selection(draft, reduction, &rows, &order, &dummies));
@@ -140,18 +145,23 @@ impl Level {
 }
 
 /// A column with how much its integral wants to be a state; smaller becomes a dummy first.
-type Ranked = (Wish, u32);
+type DummyRank = (StatePreference, u32);
 
 /// Larger values rather stay states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Wish {
+struct StatePreference {
     select: StateSelect,
     asked: bool,
     said: bool,
     given: bool,
 }
 
-fn candidates(draft: &Draft, reduction: &Reduction, rows: &[&Row], preferred: &StateChoice) -> Vec<Ranked> {
+fn candidates(
+    draft: &DaeDraft,
+    reduction: &IndexReduction,
+    rows: &[&LevelRow],
+    preferred: &StateChoice,
+) -> Vec<DummyRank> {
     let mut columns: Vec<u32> = rows.iter().flat_map(|row| row.entries.iter().map(|&(c, _)| c)).collect();
     columns.sort_unstable();
     columns.dedup();
@@ -164,45 +174,45 @@ fn candidates(draft: &Draft, reduction: &Reduction, rows: &[&Row], preferred: &S
             StateSelect::Avoid | StateSelect::Default | StateSelect::Prefer if asked => StateSelect::Prefer,
             other => other,
         };
-        Wish { select, asked, said: attributes.start_is_said(), given: attributes.start.is_some() }
+        StatePreference { select, asked, said: attributes.start_is_said(), given: attributes.start.is_some() }
     };
-    let mut ranked: Vec<Ranked> = columns.into_iter().map(|c| (wish(c), c)).collect();
+    let mut ranked: Vec<DummyRank> = columns.into_iter().map(|c| (wish(c), c)).collect();
     ranked.sort_unstable();
     ranked
 }
 
 /// The variable of which a column is the derivative.
-fn integral_variable(reduction: &Reduction, column: u32) -> VarId {
+fn integral_variable(reduction: &IndexReduction, column: u32) -> VarId {
     let integral = reduction.columns[column as usize].integral;
     reduction.variable(integral).expect("a derivative of a derivative has made the latter a variable")
 }
 
 /// The values of the Jacobian where the run starts; entries that vanish there by accident or cannot be evaluated are
 /// tried again at some other point if the rank is too low.
-fn eliminate(draft: &Draft, rows: &[&Row], order: &[Ranked], parameters: &[f64]) -> Vec<u32> {
+fn eliminate(draft: &DaeDraft, rows: &[&LevelRow], order: &[DummyRank], parameters: &[f64]) -> Vec<u32> {
     // What the solver asks for fits the point that the run has come to, not the start.
     if !order.iter().any(|(wish, _)| wish.asked) {
-        let at_start = Point { draft, parameters, shift: 0.0 };
+        let at_start = CoefficientPoint { draft, parameters, shift: 0.0 };
         let found = pivots(rows, order, &mut at_start.values(rows));
         if found.len() == rows.len() {
             return found;
         }
     }
-    let elsewhere = Point { draft, parameters, shift: 1.0 };
+    let elsewhere = CoefficientPoint { draft, parameters, shift: 1.0 };
     pivots(rows, order, &mut elsewhere.values(rows))
 }
 
 /// Where coefficients are evaluated: start values, moved by an irregular amount times `shift`.
-struct Point<'a> {
-    draft: &'a Draft,
+struct CoefficientPoint<'a> {
+    draft: &'a DaeDraft,
     parameters: &'a [f64],
     shift: f64,
 }
 
-impl Point<'_> {
+impl CoefficientPoint<'_> {
     /// Dense enough for elimination: by row, column and value.
-    fn values(&self, rows: &[&Row]) -> Vec<FxHashMap<u32, f64>> {
-        let mut evaluation = Evaluation::default();
+    fn values(&self, rows: &[&LevelRow]) -> Vec<FxHashMap<u32, f64>> {
+        let mut evaluation = EvaluationCache::default();
         let mut value = |e: ExprId| {
             let found = evaluation.value(&self.draft.exprs, e, &mut |node| self.leaf(node));
             if found.is_finite() { found } else { 0.0 }
@@ -210,18 +220,20 @@ impl Point<'_> {
         rows.iter().map(|row| row.entries.iter().map(|&(c, e)| (c, value(e))).collect()).collect()
     }
 
-    fn leaf(&self, node: Node) -> f64 {
+    fn leaf(&self, node: ExprNode) -> f64 {
         match node {
-            Node::Var(v) if !self.parameters.get(v.index()).is_none_or(|p| p.is_nan()) => self.parameters[v.index()],
-            Node::Var(v) => self.start(v) + self.shift * irregular(v),
-            Node::Der(v) | Node::Pre(v) => self.shift * irregular(v),
+            ExprNode::Var(v) if !self.parameters.get(v.index()).is_none_or(|p| p.is_nan()) => {
+                self.parameters[v.index()]
+            }
+            ExprNode::Var(v) => self.start(v) + self.shift * irregular(v),
+            ExprNode::Der(v) | ExprNode::Pre(v) => self.shift * irregular(v),
             _ => 0.0,
         }
     }
 
     fn start(&self, v: VarId) -> f64 {
-        let parameter = |node: Node| match node {
-            Node::Var(p) => self.parameters.get(p.index()).copied().unwrap_or(0.0),
+        let parameter = |node: ExprNode| match node {
+            ExprNode::Var(p) => self.parameters.get(p.index()).copied().unwrap_or(0.0),
             _ => 0.0,
         };
         let given = self.draft.variables[v.index()].start;
@@ -238,7 +250,7 @@ fn irregular(v: VarId) -> f64 {
 const SMALLEST_PIVOT: f64 = 1e-6;
 
 /// Columns of a regular square part, least wanted states first; among columns of equal wish the best pivot first.
-fn pivots(rows: &[&Row], order: &[Ranked], values: &mut [FxHashMap<u32, f64>]) -> Vec<u32> {
+fn pivots(rows: &[&LevelRow], order: &[DummyRank], values: &mut [FxHashMap<u32, f64>]) -> Vec<u32> {
     let scales: Vec<f64> = values.iter().map(|row| row.values().fold(0.0, |m: f64, v| m.max(v.abs()))).collect();
     let mut free: Vec<usize> = (0..rows.len()).collect();
     let mut by_column: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
@@ -313,27 +325,27 @@ const LARGEST_SELECTION: usize = 1_000_000;
 
 /// The record of a group whose Jacobian changes during the run and that leaves a choice.
 fn selection(
-    draft: &Draft,
-    reduction: &Reduction,
-    rows: &[&Row],
-    order: &[Ranked],
+    draft: &DaeDraft,
+    reduction: &IndexReduction,
+    rows: &[&LevelRow],
+    order: &[DummyRank],
     dummies: &[u32],
-) -> Option<Selection> {
+) -> Option<StateSelection> {
     let varying = rows.iter().flat_map(|row| &row.entries).any(|&(_, e)| {
         let found = draft.exprs.dependencies(&[e]);
         found.time
             || !found.ders.is_empty()
-            || found.vars.iter().any(|&v| draft.role(v) != super::draft::Role::Parameter)
+            || found.vars.iter().any(|&v| draft.role(v) != super::draft::SystemRole::Parameter)
     });
     if !varying || order.len() == rows.len() || order.len() * rows.len() > LARGEST_SELECTION {
         return None;
     }
     let mut columns: Vec<u32> = order.iter().map(|&(_, c)| c).collect();
     columns.sort_unstable();
-    let entry = |row: &Row, c: u32| row.entries.iter().find(|e| e.0 == c).map_or(Exprs::ZERO, |e| e.1);
+    let entry = |row: &LevelRow, c: u32| row.entries.iter().find(|e| e.0 == c).map_or(Exprs::ZERO, |e| e.1);
     let mut dummies: Vec<VarId> = dummies.iter().map(|&c| integral_variable(reduction, c)).collect();
     dummies.sort_unstable();
-    Some(Selection {
+    Some(StateSelection {
         candidates: columns.iter().map(|&c| integral_variable(reduction, c)).collect(),
         dummies,
         rows: rows.iter().map(|row| columns.iter().map(|&c| entry(row, c)).collect()).collect(),

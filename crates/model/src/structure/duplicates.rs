@@ -3,29 +3,29 @@
 //!
 //! Only after sorting: merged before, the shared variable would be a worse place to cut loops.
 
-use super::{Assign, Block, Unknown};
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use super::{BltBlock, ExplicitAssignment, Unknown};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::FxHashMap;
 
 /// Lets equal assignments share their value, in the order of the blocks, and expressions that are read behind all of them.
-pub(super) fn share<'e>(exprs: &mut Exprs, blocks: &mut [Block], behind: impl Iterator<Item = &'e mut ExprId>) {
-    let mut shared = Shared { exprs, first: FxHashMap::default(), images: FxHashMap::default() };
+pub(super) fn share<'e>(exprs: &mut Exprs, blocks: &mut [BltBlock], behind: impl Iterator<Item = &'e mut ExprId>) {
+    let mut shared = CommonExpressions { exprs, first: FxHashMap::default(), images: FxHashMap::default() };
     for block in blocks {
         match block {
-            Block::Assign(assign) => shared.assign(assign),
-            Block::Loop(l) => {
+            BltBlock::Assign(assign) => shared.assign(assign),
+            BltBlock::Loop(l) => {
                 l.inner.iter_mut().for_each(|assign| shared.assign(assign));
                 for (residual, _) in &mut l.residuals {
                     *residual = shared.image(*residual);
                 }
             }
-            Block::Mixed(_) => {}
+            BltBlock::Mixed(_) => {}
         }
     }
     behind.for_each(|e| *e = shared.read(*e));
 }
 
-struct Shared<'a> {
+struct CommonExpressions<'a> {
     exprs: &'a mut Exprs,
     /// The variable that has a value already.
     first: FxHashMap<ExprId, VarId>,
@@ -34,12 +34,14 @@ struct Shared<'a> {
     images: FxHashMap<ExprId, ExprId>,
 }
 
-impl Shared<'_> {
-    fn assign(&mut self, assign: &mut Assign) {
+impl CommonExpressions<'_> {
+    fn assign(&mut self, assign: &mut ExplicitAssignment) {
         assign.value = self.image(assign.value);
         let Unknown::Var(v) = assign.unknown else { return };
-        if !matches!(self.exprs.node(assign.value), Node::Unary(..) | Node::Binary(..) | Node::If(..) | Node::Call(..))
-        {
+        if !matches!(
+            self.exprs.node(assign.value),
+            ExprNode::Unary(..) | ExprNode::Binary(..) | ExprNode::If(..) | ExprNode::Call(..)
+        ) {
             return;
         }
         match self.first.get(&assign.value) {

@@ -1,14 +1,14 @@
 //! Relations, `floor` and `sample` become discrete mode variables with something to watch.
 
-use super::draft::{Draft, Role, RowKind, carried};
-use super::{Crossing, CrossingKind, Sample};
-use crate::flat::{Equation, Origin, OriginKind, Type};
-use bramah_expr::{Binary, ExprId, Exprs, Node, Rel, Unary, VarId};
+use super::draft::{DaeDraft, EquationRole, SystemRole, carried};
+use super::{CrossingKind, SampleEvent, ZeroCrossing};
+use crate::flat::{ElementOrigin, FlatEquation, OriginKind, ScalarType};
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction, VarId};
 use rustc_hash::FxHashMap;
 
 /// How an expression varies, by how much has to be watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Varies {
+enum ExpressionVariability {
     /// Never, or at events only.
     AtEvents,
     /// With time alone, and at events.
@@ -19,14 +19,14 @@ enum Varies {
 
 /// Replaces event-making nodes everywhere. In asserts, `when` bodies and initial equations a relation becomes the mode
 /// of the same relation elsewhere if there is one, and else is evaluated as it stands.
-pub(super) fn extract(draft: &mut Draft) {
+pub(super) fn extract(draft: &mut DaeDraft) {
     let origins = eventful_origins(draft);
-    let mut extraction = Extraction { map: Vec::with_capacity(origins.len()), ..Extraction::default() };
+    let mut extraction = CrossingExtraction { map: Vec::with_capacity(origins.len()), ..CrossingExtraction::default() };
     let live = draft.live_nodes();
     for (i, origin) in origins.iter().enumerate() {
         if !live[i] {
             extraction.map.push(ExprId(i as u32));
-            extraction.varies.push(Varies::AtEvents);
+            extraction.varies.push(ExpressionVariability::AtEvents);
             extraction.rooted.push(false);
             continue;
         }
@@ -42,12 +42,12 @@ pub(super) fn extract(draft: &mut Draft) {
 }
 
 /// For every node where an event may come from: the origin of the first equation or condition that holds it.
-fn eventful_origins(draft: &Draft) -> Vec<Option<Origin>> {
+fn eventful_origins(draft: &DaeDraft) -> Vec<Option<ElementOrigin>> {
     let mut origins = vec![None; draft.exprs.len()];
-    let mut mark = |roots: &[ExprId], origin: Origin| {
+    let mut mark = |roots: &[ExprId], origin: ElementOrigin| {
         let mut stack = roots.to_vec();
         while let Some(e) = stack.pop() {
-            let seen: &mut Option<Origin> = &mut origins[e.index()];
+            let seen: &mut Option<ElementOrigin> = &mut origins[e.index()];
             if seen.is_none() {
                 *seen = Some(origin);
                 stack.extend_from_slice(draft.exprs.operands(e).as_slice());
@@ -66,25 +66,25 @@ fn eventful_origins(draft: &Draft) -> Vec<Option<Origin>> {
 }
 
 #[derive(Default)]
-struct Extraction {
+struct CrossingExtraction {
     map: Vec<ExprId>,
-    varies: Vec<Varies>,
+    varies: Vec<ExpressionVariability>,
     /// Whether an expression holds a root.
     rooted: Vec<bool>,
     /// Modes with the relations they are of.
     watched: FxHashMap<ExprId, ExprId>,
 }
 
-impl Extraction {
-    fn image(&mut self, draft: &mut Draft, e: ExprId, origin: Option<Origin>) -> ExprId {
+impl CrossingExtraction {
+    fn image(&mut self, draft: &mut DaeDraft, e: ExprId, origin: Option<ElementOrigin>) -> ExprId {
         match draft.exprs.node(e) {
-            Node::EventRel(rel, a, b) => self.relation(draft, (rel, a, b), origin),
-            Node::EventFloor(a) => self.floor(draft, a, origin),
-            Node::Sample(start, interval) => match origin {
+            ExprNode::EventRel(rel, a, b) => self.relation(draft, (rel, a, b), origin),
+            ExprNode::EventFloor(a) => self.floor(draft, a, origin),
+            ExprNode::Sample(start, interval) => match origin {
                 Some(origin) => self.sampling(draft, start, interval, origin),
                 None => Exprs::ZERO,
             },
-            Node::If(c, a, b) if self.rooted[a.index()] || self.rooted[b.index()] => {
+            ExprNode::If(c, a, b) if self.rooted[a.index()] || self.rooted[b.index()] => {
                 let [c, a, b] = [c, a, b].map(|e| self.map[e.index()]);
                 let modes = draft.exprs.reachable(&[c], |_| true).into_iter();
                 let modes: Vec<(ExprId, ExprId)> = modes.filter_map(|e| Some((e, *self.watched.get(&e)?))).collect();
@@ -100,13 +100,18 @@ impl Extraction {
         }
     }
 
-    fn relation(&mut self, draft: &mut Draft, (rel, a, b): (Rel, ExprId, ExprId), origin: Option<Origin>) -> ExprId {
+    fn relation(
+        &mut self,
+        draft: &mut DaeDraft,
+        (rel, a, b): (RelationalOp, ExprId, ExprId),
+        origin: Option<ElementOrigin>,
+    ) -> ExprId {
         let (left, right) = (self.map[a.index()], self.map[b.index()]);
         let varies = self.varies[a.index()].max(self.varies[b.index()]);
-        let (Some(origin), true) = (origin, varies > Varies::AtEvents) else {
+        let (Some(origin), true) = (origin, varies > ExpressionVariability::AtEvents) else {
             return draft.exprs.rel(rel, left, right);
         };
-        let timed = if varies == Varies::WithTime { time_event(draft, rel, left, right) } else { None };
+        let timed = if varies == ExpressionVariability::WithTime { time_event(draft, rel, left, right) } else { None };
         let (kind, value) = match timed {
             Some((rel, at)) => {
                 let time = draft.exprs.time();
@@ -115,60 +120,65 @@ impl Extraction {
             None => (CrossingKind::Relation(rel, left, right), draft.exprs.rel(rel, left, right)),
         };
         match draft.exprs.node(value) {
-            Node::Num(_) => value,
+            ExprNode::Num(_) => value,
             _ => {
-                let mode = watched(draft, kind, value, Type::Boolean, origin);
+                let mode = watched(draft, kind, value, ScalarType::Boolean, origin);
                 self.watched.insert(mode, value);
                 mode
             }
         }
     }
 
-    fn floor(&self, draft: &mut Draft, a: ExprId, origin: Option<Origin>) -> ExprId {
+    fn floor(&self, draft: &mut DaeDraft, a: ExprId, origin: Option<ElementOrigin>) -> ExprId {
         let argument = self.map[a.index()];
         let value = draft.exprs.floor(argument);
         match origin {
-            Some(origin) if self.varies[a.index()] > Varies::AtEvents => {
-                watched(draft, CrossingKind::Floor(argument), value, Type::Integer, origin)
+            Some(origin) if self.varies[a.index()] > ExpressionVariability::AtEvents => {
+                watched(draft, CrossingKind::Floor(argument), value, ScalarType::Integer, origin)
             }
             _ => value,
         }
     }
 
-    fn sampling(&self, draft: &mut Draft, start: ExprId, interval: ExprId, origin: Origin) -> ExprId {
+    fn sampling(&self, draft: &mut DaeDraft, start: ExprId, interval: ExprId, origin: ElementOrigin) -> ExprId {
         let (start, interval) = (self.map[start.index()], self.map[interval.index()]);
-        let origin = Origin { kind: OriginKind::Relation, ..origin };
+        let origin = ElementOrigin { kind: OriginKind::Relation, ..origin };
         let text = draft.exprs.sample(start, interval);
         let name = draft.text(text);
-        let mode = draft.make_variable(name, Type::Boolean, Role::Sample, origin);
-        draft.samples.push(Sample { mode, start, interval, origin });
+        let mode = draft.make_variable(name, ScalarType::Boolean, SystemRole::Sample, origin);
+        draft.samples.push(SampleEvent { mode, start, interval, origin });
         draft.exprs.var(mode)
     }
 
-    fn variation(&self, draft: &Draft, e: ExprId) -> Varies {
+    fn variation(&self, draft: &DaeDraft, e: ExprId) -> ExpressionVariability {
         match draft.exprs.node(e) {
-            Node::Time => Varies::WithTime,
-            Node::Der(_) => Varies::Continuously,
-            Node::Var(v) => variable_variation(draft, v),
-            Node::EventRel(..) | Node::EventFloor(_) | Node::Sample(..) => Varies::AtEvents,
+            ExprNode::Time => ExpressionVariability::WithTime,
+            ExprNode::Der(_) => ExpressionVariability::Continuously,
+            ExprNode::Var(v) => variable_variation(draft, v),
+            ExprNode::EventRel(..) | ExprNode::EventFloor(_) | ExprNode::Sample(..) => ExpressionVariability::AtEvents,
             _ => {
                 let operands = draft.exprs.operands(e);
-                operands.as_slice().iter().map(|a| self.varies[a.index()]).max().unwrap_or(Varies::AtEvents)
+                operands
+                    .as_slice()
+                    .iter()
+                    .map(|a| self.varies[a.index()])
+                    .max()
+                    .unwrap_or(ExpressionVariability::AtEvents)
             }
         }
     }
 }
 
-fn variable_variation(draft: &Draft, v: VarId) -> Varies {
+fn variable_variation(draft: &DaeDraft, v: VarId) -> ExpressionVariability {
     match draft.role(v) {
-        Role::Continuous => Varies::Continuously,
-        Role::Input if draft.variables[v.index()].ty == Type::Real => Varies::Continuously,
-        _ => Varies::AtEvents,
+        SystemRole::Continuous => ExpressionVariability::Continuously,
+        SystemRole::Input if draft.variables[v.index()].ty == ScalarType::Real => ExpressionVariability::Continuously,
+        _ => ExpressionVariability::AtEvents,
     }
 }
 
 /// `left rel right` as `time rel at`, if it is affine in time with a numeric factor.
-fn time_event(draft: &mut Draft, rel: Rel, left: ExprId, right: ExprId) -> Option<(Rel, ExprId)> {
+fn time_event(draft: &mut DaeDraft, rel: RelationalOp, left: ExprId, right: ExprId) -> Option<(RelationalOp, ExprId)> {
     let pool = &mut draft.exprs;
     let time = pool.time();
     if left == time && !pool.contains(right, time) {
@@ -180,12 +190,12 @@ fn time_event(draft: &mut Draft, rel: Rel, left: ExprId, right: ExprId) -> Optio
 }
 
 /// The relation with its sides exchanged.
-fn mirrored(rel: Rel) -> Rel {
+fn mirrored(rel: RelationalOp) -> RelationalOp {
     match rel {
-        Rel::Lt => Rel::Gt,
-        Rel::Le => Rel::Ge,
-        Rel::Gt => Rel::Lt,
-        Rel::Ge => Rel::Le,
+        RelationalOp::Lt => RelationalOp::Gt,
+        RelationalOp::Le => RelationalOp::Ge,
+        RelationalOp::Gt => RelationalOp::Lt,
+        RelationalOp::Ge => RelationalOp::Le,
         same => same,
     }
 }
@@ -193,8 +203,8 @@ fn mirrored(rel: Rel) -> Rel {
 /// The argument of a root that changes.
 fn root(pool: &Exprs, e: ExprId) -> Option<ExprId> {
     let argument = match pool.node(e) {
-        Node::Unary(Unary::Sqrt, u) => u,
-        Node::Binary(Binary::Pow, u, n) if pool.as_num(n).is_some_and(|n| n > 0.0 && n.fract() != 0.0) => u,
+        ExprNode::Unary(UnaryFunction::Sqrt, u) => u,
+        ExprNode::Binary(BinaryFunction::Pow, u, n) if pool.as_num(n).is_some_and(|n| n > 0.0 && n.fract() != 0.0) => u,
         _ => return None,
     };
     pool.as_num(argument).is_none().then_some(argument)
@@ -209,11 +219,11 @@ fn beyond(pool: &mut Exprs, branch: ExprId, holds: ExprId) -> ExprId {
         let Some(argument) = root(pool, e) else { continue };
         let opposite = pool.neg(argument);
         let below = match pool.node(e) {
-            Node::Binary(_, _, n) => pool.pow(opposite, n),
+            ExprNode::Binary(_, _, n) => pool.pow(opposite, n),
             _ => pool.sqrt(opposite),
         };
         let below = pool.neg(below);
-        let negative = pool.rel(Rel::Lt, argument, Exprs::ZERO);
+        let negative = pool.rel(RelationalOp::Lt, argument, Exprs::ZERO);
         let other = pool.if_(negative, below, e);
         replaced.push((e, pool.if_(holds, e, other)));
     }
@@ -221,12 +231,12 @@ fn beyond(pool: &mut Exprs, branch: ExprId, holds: ExprId) -> ExprId {
 }
 
 /// A mode variable with its equation and its crossing.
-fn watched(draft: &mut Draft, kind: CrossingKind, value: ExprId, ty: Type, origin: Origin) -> ExprId {
-    let origin = Origin { kind: OriginKind::Relation, ..origin };
+fn watched(draft: &mut DaeDraft, kind: CrossingKind, value: ExprId, ty: ScalarType, origin: ElementOrigin) -> ExprId {
+    let origin = ElementOrigin { kind: OriginKind::Relation, ..origin };
     let name = draft.text(value);
-    let mode = draft.make_variable(name, ty, Role::Discrete, origin);
-    draft.crossings.push(Crossing { mode, kind, origin });
+    let mode = draft.make_variable(name, ty, SystemRole::Discrete, origin);
+    draft.crossings.push(ZeroCrossing { mode, kind, origin });
     let lhs = draft.exprs.var(mode);
-    draft.add_equation(Equation { lhs, rhs: value, origin }, RowKind::Definition);
+    draft.add_equation(FlatEquation { lhs, rhs: value, origin }, EquationRole::Definition);
     lhs
 }

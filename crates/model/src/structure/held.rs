@@ -1,14 +1,14 @@
 //! Bodies that cannot move: their position is a constant, and twice differentiated it meets their acceleration.
 
-use super::draft::{Draft, Role};
-use super::pantelides::Reduction;
+use super::draft::{DaeDraft, SystemRole};
+use super::pantelides::IndexReduction;
 use super::{Alias, messages, places};
-use crate::flat::Equation;
+use crate::flat::FlatEquation;
 use bramah_expr::VarId;
 use bramah_syntax::diag::Diagnostic;
 
 /// A note for each position that parameters alone fix. A locked rotor is a model that one may want: it is no warning.
-pub(super) fn find(draft: &Draft, reduction: &Reduction, aliases: &[Alias]) -> Vec<Diagnostic> {
+pub(super) fn find(draft: &DaeDraft, reduction: &IndexReduction, aliases: &[Alias]) -> Vec<Diagnostic> {
     let held = reduction.constraints_twice_differentiated().filter_map(|(v, row)| {
         let equation = draft.equations[row];
         let bodies = bodies(draft, aliases, v);
@@ -19,14 +19,14 @@ pub(super) fn find(draft: &Draft, reduction: &Reduction, aliases: &[Alias]) -> V
 }
 
 /// Whether nothing else in an equation changes.
-fn is_constant(draft: &Draft, equation: &Equation, v: VarId) -> bool {
+fn is_constant(draft: &DaeDraft, equation: &FlatEquation, v: VarId) -> bool {
     let found = draft.exprs.dependencies(&[equation.lhs, equation.rhs]);
-    let known = |other: &VarId| *other == v || draft.role(*other) == Role::Parameter;
+    let known = |other: &VarId| *other == v || draft.role(*other) == SystemRole::Parameter;
     !found.time && found.ders.is_empty() && found.pres.is_empty() && found.vars.iter().all(known)
 }
 
 /// The names of a position outside of connectors.
-fn bodies(draft: &Draft, aliases: &[Alias], v: VarId) -> Vec<VarId> {
+fn bodies(draft: &DaeDraft, aliases: &[Alias], v: VarId) -> Vec<VarId> {
     let others = aliases.iter().filter(|a| a.target == v).map(|a| a.variable);
     let own = |v: &VarId| !places::is_connector(&draft.variables, draft.variables[v.index()].origin.instance);
     let mut found: Vec<VarId> = std::iter::once(v).chain(others).filter(own).collect();

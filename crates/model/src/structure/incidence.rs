@@ -1,7 +1,7 @@
 //! Which unknowns occur in which equations: the bipartite graph that all structural algorithms walk.
 
-use bramah_expr::visit::Walk;
-use bramah_expr::{Binary, ExprId, Exprs, Node, Unary};
+use bramah_expr::visit::NodeTraversal;
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction};
 
 /// "None" for rows and columns.
 pub(super) const NONE: u32 = u32::MAX;
@@ -11,13 +11,13 @@ pub(super) const NONE: u32 = u32::MAX;
 /// The columns of a row come in two groups: those that the equation can be solved for in principle, then those that
 /// only matter to it (they stand inside a relation, say).
 #[derive(Clone, Debug, Default)]
-pub(super) struct Incidence {
+pub(super) struct IncidenceMatrix {
     starts: Vec<u32>,
     splits: Vec<u32>,
     columns: Vec<u32>,
 }
 
-impl Incidence {
+impl IncidenceMatrix {
     /// Number of rows.
     pub fn rows(&self) -> usize {
         self.splits.len()
@@ -68,26 +68,26 @@ impl Incidence {
     }
 }
 
-/// Collects the columns of expressions into an [`Incidence`], telling apart what an equation can be solved for.
+/// Collects the columns of expressions into an [`IncidenceMatrix`], telling apart what an equation can be solved for.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Scanner {
-    walk: Walk,
+pub(super) struct IncidenceScanner {
+    walk: NodeTraversal,
     solvable: Vec<u32>,
     dependent: Vec<u32>,
     mark: Vec<u32>,
     stamp: u32,
 }
 
-impl Scanner {
+impl IncidenceScanner {
     /// Appends the row of the continuous equation `lhs = rhs`. `column` maps a leaf to a column or to nothing;
     /// `matchable` says which columns a continuous equation can be solved for.
     pub fn push(
         &mut self,
         pool: &Exprs,
         sides: [ExprId; 2],
-        column: impl Fn(Node) -> Option<u32>,
+        column: impl Fn(ExprNode) -> Option<u32>,
         matchable: impl Fn(u32) -> bool,
-        out: &mut Incidence,
+        out: &mut IncidenceMatrix,
     ) {
         self.scan(pool, sides, column);
         self.dependent.extend(self.solvable.iter().copied().filter(|&c| !matchable(c)));
@@ -101,8 +101,8 @@ impl Scanner {
         pool: &Exprs,
         sides: [ExprId; 2],
         lone: &[u32],
-        column: impl Fn(Node) -> Option<u32>,
-        out: &mut Incidence,
+        column: impl Fn(ExprNode) -> Option<u32>,
+        out: &mut IncidenceMatrix,
     ) {
         self.scan(pool, sides, column);
         self.solvable.append(&mut self.dependent);
@@ -110,7 +110,7 @@ impl Scanner {
         out.push(lone, &self.solvable);
     }
 
-    fn scan(&mut self, pool: &Exprs, sides: [ExprId; 2], column: impl Fn(Node) -> Option<u32>) {
+    fn scan(&mut self, pool: &Exprs, sides: [ExprId; 2], column: impl Fn(ExprNode) -> Option<u32>) {
         self.solvable.clear();
         self.dependent.clear();
         self.stamp += 1;
@@ -121,7 +121,7 @@ impl Scanner {
             if let Some(c) = column(node) {
                 note(mark, stamp, c, solvable);
             }
-            if let Node::If(c, ..) = node {
+            if let ExprNode::If(c, ..) = node {
                 conditions.push(c);
             }
             let blunt = is_piecewise_constant(node);
@@ -138,7 +138,7 @@ impl Scanner {
         &mut self,
         pool: &Exprs,
         sides: [ExprId; 2],
-        column: impl Fn(Node) -> Option<u32>,
+        column: impl Fn(ExprNode) -> Option<u32>,
         conditions: &[ExprId],
     ) {
         let (mark, stamp) = (&mut self.mark, self.stamp + 1);
@@ -159,7 +159,7 @@ impl Scanner {
 }
 
 /// Columns outside conditions and other piecewise constant parts.
-fn smooth_columns(pool: &Exprs, sides: [ExprId; 2], column: &impl Fn(Node) -> Option<u32>) -> Vec<u32> {
+fn smooth_columns(pool: &Exprs, sides: [ExprId; 2], column: &impl Fn(ExprNode) -> Option<u32>) -> Vec<u32> {
     let mut seen = rustc_hash::FxHashSet::default();
     let mut stack = vec![sides[1], sides[0]];
     let mut found = Vec::new();
@@ -170,7 +170,7 @@ fn smooth_columns(pool: &Exprs, sides: [ExprId; 2], column: &impl Fn(Node) -> Op
         }
         found.extend(column(node));
         match node {
-            Node::If(_, a, b) => stack.extend([b, a]),
+            ExprNode::If(_, a, b) => stack.extend([b, a]),
             _ => stack.extend(pool.operands(e).as_slice().iter().rev()),
         }
     }
@@ -189,22 +189,22 @@ fn note(mark: &mut Vec<u32>, stamp: u32, column: u32, out: &mut Vec<u32>) {
 }
 
 /// Its derivative by any argument is 0 wherever it exists.
-fn is_piecewise_constant(node: Node) -> bool {
+fn is_piecewise_constant(node: ExprNode) -> bool {
     matches!(
         node,
-        Node::Rel(..)
-            | Node::EventRel(..)
-            | Node::EventFloor(_)
-            | Node::Unary(Unary::Floor | Unary::Sign | Unary::Not, _)
-            | Node::Binary(Binary::And | Binary::Or, ..)
+        ExprNode::Rel(..)
+            | ExprNode::EventRel(..)
+            | ExprNode::EventFloor(_)
+            | ExprNode::Unary(UnaryFunction::Floor | UnaryFunction::Sign | UnaryFunction::Not, _)
+            | ExprNode::Binary(BinaryFunction::And | BinaryFunction::Or, ..)
     )
 }
 
 #[cfg(test)]
-impl Incidence {
+impl IncidenceMatrix {
     /// From lists of solvable columns.
     pub fn of(rows: &[Vec<u32>]) -> Self {
-        let mut made = Incidence::default();
+        let mut made = IncidenceMatrix::default();
         for row in rows {
             made.push(row, &[]);
         }

@@ -4,20 +4,20 @@
 //! other fixed starts, `v = pre(v)` of discrete variables that nothing else determines, and at last start values that
 //! are chosen here to make the system determined.
 
-use super::draft::{Draft, Role, RowKind};
-use super::incidence::{Incidence, NONE, Scanner};
-use super::matching::{Augmenter, Matching};
-use super::parameters::{self, Known};
-use super::sorting::{Columns, System, SystemRow};
+use super::draft::{DaeDraft, EquationRole, SystemRole};
+use super::incidence::{IncidenceMatrix, IncidenceScanner, NONE};
+use super::matching::{Matching, PathAugmenter};
+use super::parameters::{self, SignAnalysis};
+use super::sorting::{EquationSystem, SystemRow, UnknownColumns};
 use super::{Unknown, delays, dependence, discrete, messages};
-use crate::flat::{Equation, Origin, OriginKind, StateSelect, Variability};
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use crate::flat::{ElementOrigin, FlatEquation, OriginKind, StateSelect, Variability};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::diag::Diagnostic;
 use rustc_hash::FxHashMap;
 
 /// The matched system and what was decided on the way.
-pub(super) struct Start {
-    pub system: System,
+pub(super) struct InitialSystem {
+    pub system: EquationSystem,
     /// Variables whose start values were chosen.
     pub chosen: Vec<VarId>,
     /// Fixed starts that hold only if they are consistent: expressions that must vanish, with their equations.
@@ -26,7 +26,7 @@ pub(super) struct Start {
 }
 
 /// What an initial equation says that determines nothing.
-enum Redundancy {
+enum InitialRedundancy {
     /// The same as another.
     Said,
     /// What may follow from the equations of the model: checked at the start.
@@ -36,17 +36,17 @@ enum Redundancy {
 }
 
 /// What the other systems have found out.
-pub(super) struct Model<'a> {
+pub(super) struct InitializationContext<'a> {
     /// The event system: all equations with their unknowns.
-    pub running: &'a System,
+    pub running: &'a EquationSystem,
     pub states: &'a [VarId],
     /// Differentiated variables that are not states: their fixed starts may be redundant.
     pub demoted: &'a [VarId],
 }
 
 /// Sets up and matches the initial system.
-pub(super) fn assemble(draft: &mut Draft, known: &mut Known, model: &Model) -> Start {
-    let mut assembly = Assembly::new(draft, model);
+pub(super) fn assemble(draft: &mut DaeDraft, known: &mut SignAnalysis, model: &InitializationContext) -> InitialSystem {
+    let mut assembly = InitialAssembly::new(draft, model);
     assembly.model_rows(draft, model);
     assembly.initial_equations(draft);
     assembly.fixed_starts(draft, model);
@@ -56,17 +56,17 @@ pub(super) fn assemble(draft: &mut Draft, known: &mut Known, model: &Model) -> S
     assembly.finish(draft)
 }
 
-struct Assembly {
+struct InitialAssembly {
     columns: Vec<Unknown>,
-    places: Columns,
+    places: UnknownColumns,
     discrete_columns: Vec<bool>,
     rows: Vec<SystemRow>,
     /// How many of them are the model's own equations, which come first.
     model_rows: u32,
-    incidence: Incidence,
+    incidence: IncidenceMatrix,
     matching: Matching,
-    augmenter: Augmenter,
-    scanner: Scanner,
+    augmenter: PathAugmenter,
+    scanner: IncidenceScanner,
     /// Where `initial()` is 1 and `pre` of a variable that keeps its value is the variable.
     map: Vec<ExprId>,
     keeps: Vec<bool>,
@@ -75,26 +75,26 @@ struct Assembly {
     diagnostics: Vec<Diagnostic>,
 }
 
-impl Assembly {
-    fn new(draft: &mut Draft, model: &Model) -> Self {
+impl InitialAssembly {
+    fn new(draft: &mut DaeDraft, model: &InitializationContext) -> Self {
         let mut columns: Vec<Unknown> = model.running.columns.clone();
         columns.extend(model.states.iter().map(|&v| Unknown::Var(v)));
-        columns.extend(draft.with_role(Role::FreeParameter).into_iter().map(Unknown::Var));
-        let is_discrete = |u: &Unknown| matches!(u, Unknown::Var(v) if draft.role(*v) == Role::Discrete);
+        columns.extend(draft.with_role(SystemRole::FreeParameter).into_iter().map(Unknown::Var));
+        let is_discrete = |u: &Unknown| matches!(u, Unknown::Var(v) if draft.role(*v) == SystemRole::Discrete);
         let discrete_columns: Vec<bool> = columns.iter().map(is_discrete).collect();
         let matching = Matching::empty(0, columns.len());
         let (keeps, map) = at_start(draft, model.running);
-        let places = Columns::new(&columns, draft.variables.len());
-        Assembly {
+        let places = UnknownColumns::new(&columns, draft.variables.len());
+        InitialAssembly {
             columns,
             places,
             discrete_columns,
             rows: Vec::new(),
             model_rows: 0,
-            incidence: Incidence::default(),
+            incidence: IncidenceMatrix::default(),
             matching,
-            augmenter: Augmenter::default(),
-            scanner: Scanner::default(),
+            augmenter: PathAugmenter::default(),
+            scanner: IncidenceScanner::default(),
             map,
             keeps,
             chosen: Vec::new(),
@@ -103,15 +103,15 @@ impl Assembly {
         }
     }
 
-    fn mapped(&self, equation: Equation) -> Equation {
+    fn mapped(&self, equation: FlatEquation) -> FlatEquation {
         let image = |e: ExprId| self.map.get(e.index()).copied().unwrap_or(e);
-        Equation { lhs: image(equation.lhs), rhs: image(equation.rhs), origin: equation.origin }
+        FlatEquation { lhs: image(equation.lhs), rhs: image(equation.rhs), origin: equation.origin }
     }
 
     /// Appends a row without matching it.
-    fn push(&mut self, draft: &Draft, equation: Equation, index: u32, lone: Option<Vec<u32>>) -> u32 {
+    fn push(&mut self, draft: &DaeDraft, equation: FlatEquation, index: u32, lone: Option<Vec<u32>>) -> u32 {
         let places = &self.places;
-        let column = |node: Node| places.of_node(node);
+        let column = |node: ExprNode| places.of_node(node);
         let sides = [equation.lhs, equation.rhs];
         let discrete = lone.is_some();
         match lone {
@@ -131,7 +131,7 @@ impl Assembly {
     }
 
     /// The equations of the model, matched as they are when the model runs wherever possible.
-    fn model_rows(&mut self, draft: &Draft, model: &Model) {
+    fn model_rows(&mut self, draft: &DaeDraft, model: &InitializationContext) {
         let running = model.running;
         let mut open = Vec::new();
         for (i, row) in running.rows.iter().enumerate() {
@@ -160,7 +160,7 @@ impl Assembly {
         matches!(unknown, Unknown::Var(v) if self.keeps[v.index()]) && row.discrete
     }
 
-    fn initial_equations(&mut self, draft: &mut Draft) {
+    fn initial_equations(&mut self, draft: &mut DaeDraft) {
         for equation in draft.initial_equations.clone() {
             if self.takes_left_limit(draft, &equation) {
                 continue;
@@ -174,19 +174,19 @@ impl Assembly {
                 continue;
             }
             match self.redundancy(row) {
-                Redundancy::Said => {}
-                Redundancy::Follows => self.check(draft, row),
-                Redundancy::Contradicts => self.report(draft, row),
+                InitialRedundancy::Said => {}
+                InitialRedundancy::Follows => self.check(draft, row),
+                InitialRedundancy::Contradicts => self.report(draft, row),
             }
         }
-        draft.kinds.resize(draft.equations.len(), RowKind::Continuous);
+        draft.kinds.resize(draft.equations.len(), EquationRole::Continuous);
     }
 
     /// `pre(v) = value` of a discrete unknown that gets a value of its own at the start says what was before: its start
     /// value, where that is known.
-    fn takes_left_limit(&self, draft: &mut Draft, equation: &Equation) -> bool {
+    fn takes_left_limit(&self, draft: &mut DaeDraft, equation: &FlatEquation) -> bool {
         let pre = |e: ExprId| match draft.exprs.node(e) {
-            Node::Pre(v) if !self.keeps[v.index()] => Some(v),
+            ExprNode::Pre(v) if !self.keeps[v.index()] => Some(v),
             _ => None,
         };
         let sides = pre(equation.lhs).map(|v| (v, equation.rhs));
@@ -208,7 +208,7 @@ impl Assembly {
     }
 
     /// What an initial equation that determines nothing says beside those that determine the same.
-    fn redundancy(&self, row: u32) -> Redundancy {
+    fn redundancy(&self, row: u32) -> InitialRedundancy {
         let own = self.rows[row as usize].equation;
         // one that has no unknowns may hold as well
         let mut follows = self.augmenter.rows_seen.iter().all(|&seen| seen == row);
@@ -216,15 +216,15 @@ impl Assembly {
             let other = self.rows[seen as usize].equation;
             let same = [(own.lhs, own.rhs), (own.rhs, own.lhs)].contains(&(other.lhs, other.rhs));
             if same {
-                return Redundancy::Said;
+                return InitialRedundancy::Said;
             }
             follows |= seen < self.model_rows;
         }
-        if follows { Redundancy::Follows } else { Redundancy::Contradicts }
+        if follows { InitialRedundancy::Follows } else { InitialRedundancy::Contradicts }
     }
 
     /// The discrete unknowns an initial equation can be solved for, if it is a discrete one.
-    fn lone_columns(&self, draft: &Draft, equation: &Equation) -> Option<Vec<u32>> {
+    fn lone_columns(&self, draft: &DaeDraft, equation: &FlatEquation) -> Option<Vec<u32>> {
         let lone = [equation.lhs, equation.rhs].map(|e| discrete::lone_discrete(draft, e));
         let left_is_continuous = lone[0].is_none() && discrete::has_continuous(draft, equation.lhs);
         let found: Vec<u32> = lone.iter().flatten().filter_map(|&v| self.places.of(Unknown::Var(v))).collect();
@@ -232,9 +232,9 @@ impl Assembly {
     }
 
     /// `x = start` for fixed continuous unknowns, states first.
-    fn fixed_starts(&mut self, draft: &mut Draft, model: &Model) {
+    fn fixed_starts(&mut self, draft: &mut DaeDraft, model: &InitializationContext) {
         let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
-        let fixed = draft.with_role(Role::Continuous).into_iter().filter(|v| draft.variables[v.index()].fixed);
+        let fixed = draft.with_role(SystemRole::Continuous).into_iter().filter(|v| draft.variables[v.index()].fixed);
         let (states, others): (Vec<VarId>, Vec<VarId>) = fixed.partition(is_state);
         for v in states.into_iter().chain(others) {
             let row = self.push_start(draft, v);
@@ -249,30 +249,30 @@ impl Assembly {
         }
     }
 
-    fn push_start(&mut self, draft: &mut Draft, v: VarId) -> u32 {
+    fn push_start(&mut self, draft: &mut DaeDraft, v: VarId) -> u32 {
         let variable = &draft.variables[v.index()];
-        let origin = Origin { kind: OriginKind::Start, ..variable.origin };
+        let origin = ElementOrigin { kind: OriginKind::Start, ..variable.origin };
         let (start, ty) = (variable.start, variable.ty);
         let rhs = match start {
             Some(e) => e,
             None => draft.exprs.num(parameters::default_start(ty)),
         };
         let lhs = draft.exprs.var(v);
-        let equation = Equation { lhs, rhs, origin };
-        draft.add_equation(equation, RowKind::Continuous);
+        let equation = FlatEquation { lhs, rhs, origin };
+        draft.add_equation(equation, EquationRole::Continuous);
         self.push(draft, equation, draft.equations.len() as u32 - 1, None)
     }
 
     /// `v = pre(v)` for discrete unknowns that no initial equation determines.
-    fn discrete_defaults(&mut self, draft: &mut Draft) {
-        for v in draft.with_role(Role::Discrete) {
+    fn discrete_defaults(&mut self, draft: &mut DaeDraft) {
+        for v in draft.with_role(SystemRole::Discrete) {
             if !self.keeps[v.index()] {
                 continue;
             }
-            let origin = Origin { kind: OriginKind::Start, ..draft.variables[v.index()].origin };
+            let origin = ElementOrigin { kind: OriginKind::Start, ..draft.variables[v.index()].origin };
             let (lhs, rhs) = (draft.exprs.var(v), draft.exprs.pre(v));
-            let equation = Equation { lhs, rhs, origin };
-            draft.add_equation(equation, RowKind::Definition);
+            let equation = FlatEquation { lhs, rhs, origin };
+            draft.add_equation(equation, EquationRole::Definition);
             let lone = Some(self.places.of(Unknown::Var(v)).into_iter().collect());
             let row = self.push(draft, equation, draft.equations.len() as u32 - 1, lone);
             if !self.augment(row) && draft.variables[v.index()].fixed {
@@ -282,7 +282,7 @@ impl Assembly {
     }
 
     /// Starts of states, best first, then of other unknowns, until everything is determined.
-    fn choose_starts(&mut self, draft: &mut Draft, known: &mut Known, model: &Model) {
+    fn choose_starts(&mut self, draft: &mut DaeDraft, known: &mut SignAnalysis, model: &InitializationContext) {
         let mut missing = self.matching.row_of.iter().filter(|&&r| r == NONE).count();
         if missing == 0 {
             return;
@@ -309,24 +309,24 @@ impl Assembly {
     }
 
     /// Takes back chosen starts, in rows from `first` on, of what the other rows determine beyond their structure; how many.
-    fn give_up_what_follows(&mut self, draft: &Draft, known: &mut Known, first: usize) -> usize {
+    fn give_up_what_follows(&mut self, draft: &DaeDraft, known: &mut SignAnalysis, first: usize) -> usize {
         let matched: Vec<usize> = (0..self.rows.len())
             .filter(|&row| self.matching.column_of[row] != NONE && !self.rows[row].discrete)
             .collect();
-        let equations: Vec<Equation> = matched.iter().map(|&row| self.rows[row].equation).collect();
+        let equations: Vec<FlatEquation> = matched.iter().map(|&row| self.rows[row].equation).collect();
         let follows = dependence::following(draft, known, &equations, |leaf| self.places.of_node(leaf));
         let chosen: Vec<usize> = follows.into_iter().map(|i| matched[i]).filter(|&row| row >= first).collect();
         for &row in &chosen {
             let column = std::mem::replace(&mut self.matching.column_of[row], NONE);
             self.matching.row_of[column as usize] = NONE;
-            self.chosen.retain(|&v| draft.exprs.node(self.rows[row].equation.lhs) != Node::Var(v));
+            self.chosen.retain(|&v| draft.exprs.node(self.rows[row].equation.lhs) != ExprNode::Var(v));
         }
         chosen.len()
     }
 
     /// What the model says of its components holds for a variable that another one took the place of as state, too; but
     /// beside starts that are `fixed` it is a guess, for instance of where a loop of joints is to be found.
-    fn check_said_starts(&mut self, draft: &mut Draft, model: &Model) {
+    fn check_said_starts(&mut self, draft: &mut DaeDraft, model: &InitializationContext) {
         for &v in model.demoted {
             let variable = &draft.variables[v.index()];
             if variable.fixed || !variable.start_is_said() || self.chosen.contains(&v) {
@@ -344,14 +344,15 @@ impl Assembly {
         }
     }
 
-    fn is_fixed_start(&self, draft: &Draft, row: u32) -> bool {
+    fn is_fixed_start(&self, draft: &DaeDraft, row: u32) -> bool {
         let equation = self.rows[row as usize].equation;
         let fixed = |v: VarId| draft.variables[v.index()].fixed;
-        equation.origin.kind == OriginKind::Start && matches!(draft.exprs.node(equation.lhs), Node::Var(v) if fixed(v))
+        equation.origin.kind == OriginKind::Start
+            && matches!(draft.exprs.node(equation.lhs), ExprNode::Var(v) if fixed(v))
     }
 
     /// A row that determines nothing must hold all the same.
-    fn check(&mut self, draft: &mut Draft, row: u32) {
+    fn check(&mut self, draft: &mut DaeDraft, row: u32) {
         let SystemRow { equation, index, .. } = self.rows[row as usize];
         let difference = draft.exprs.sub(equation.lhs, equation.rhs);
         self.checks.push((difference, index));
@@ -359,7 +360,7 @@ impl Assembly {
 
     /// States, what was differentiated and what would rather be a state and has a start, before others: those with the more
     /// confident start, then those that would rather be states.
-    fn start_candidates(&self, draft: &Draft, model: &Model) -> Vec<VarId> {
+    fn start_candidates(&self, draft: &DaeDraft, model: &InitializationContext) -> Vec<VarId> {
         let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
         let is_differentiated = |v: &VarId| is_state(v) || model.demoted.binary_search(v).is_ok();
         let wish = |v: VarId| {
@@ -368,7 +369,7 @@ impl Assembly {
         };
         let by_wish = |v: &VarId| (draft.variables[v.index()].confidence, !is_state(v), std::cmp::Reverse(wish(*v)));
         let (preferred, mut others): (Vec<VarId>, Vec<VarId>) =
-            draft.with_role(Role::Continuous).into_iter().filter(|v| !is_differentiated(v)).partition(|v| {
+            draft.with_role(SystemRole::Continuous).into_iter().filter(|v| !is_differentiated(v)).partition(|v| {
                 let variable = &draft.variables[v.index()];
                 variable.state_select >= StateSelect::Prefer && variable.start.is_some()
             });
@@ -376,26 +377,26 @@ impl Assembly {
         found.sort_by_key(by_wish);
         others.sort_by_key(|&v| std::cmp::Reverse(wish(v)));
         found.extend(others);
-        found.extend(draft.with_role(Role::FreeParameter));
+        found.extend(draft.with_role(SystemRole::FreeParameter));
         found.retain(|&v| !draft.variables[v.index()].fixed);
         found
     }
 
     /// The first contradiction is reported; later ones may follow from it.
-    fn report(&mut self, draft: &Draft, row: u32) {
+    fn report(&mut self, draft: &DaeDraft, row: u32) {
         if !self.diagnostics.is_empty() {
             return;
         }
         let mut rows = self.augmenter.rows_seen.clone();
         rows.sort_unstable();
-        let equations: Vec<Equation> = rows.iter().map(|&r| self.rows[r as usize].equation).collect();
+        let equations: Vec<FlatEquation> = rows.iter().map(|&r| self.rows[r as usize].equation).collect();
         let diagnostic = messages::initially_contradicting(draft, &self.rows[row as usize].equation, &equations);
         self.diagnostics.push(diagnostic);
     }
 
     /// Keeps the matched rows.
-    fn finish(self, draft: &Draft) -> Start {
-        let mut system = System { columns: self.columns, ..System::default() };
+    fn finish(self, draft: &DaeDraft) -> InitialSystem {
+        let mut system = EquationSystem { columns: self.columns, ..EquationSystem::default() };
         system.matching = Matching::empty(0, system.columns.len());
         for (i, row) in self.rows.iter().enumerate() {
             let column = self.matching.column_of[i];
@@ -415,13 +416,13 @@ impl Assembly {
         if diagnostics.is_empty() && !unsaid.is_empty() {
             diagnostics.push(messages::chosen_starts(draft, &unsaid));
         }
-        Start { system, chosen: self.chosen, checks: self.checks, diagnostics }
+        InitialSystem { system, chosen: self.chosen, checks: self.checks, diagnostics }
     }
 }
 
 /// Which discrete unknowns keep their value at the start, and the image of every expression there.
-fn at_start(draft: &mut Draft, running: &System) -> (Vec<bool>, Vec<ExprId>) {
-    let initial = draft.rewritten(|_, node| (node == Node::Initial).then_some(Exprs::ONE));
+fn at_start(draft: &mut DaeDraft, running: &EquationSystem) -> (Vec<bool>, Vec<ExprId>) {
+    let initial = draft.rewritten(|_, node| (node == ExprNode::Initial).then_some(Exprs::ONE));
     let mut keeps = vec![false; draft.variables.len()];
     for (row, &column) in running.rows.iter().zip(&running.matching.column_of) {
         if let (true, Unknown::Var(v)) = (row.discrete, running.columns[column as usize]) {
@@ -433,9 +434,9 @@ fn at_start(draft: &mut Draft, running: &System) -> (Vec<bool>, Vec<ExprId>) {
     before.keys().for_each(|v| keeps[v.index()] = false);
     let keeping = keeps.clone();
     let mut map = draft.rewritten(|pool, node| match node {
-        Node::Initial => Some(Exprs::ONE),
-        Node::Pre(v) if before.contains_key(&v) => Some(pool.var(before[&v])),
-        Node::Pre(v) if keeping[v.index()] => Some(pool.var(v)),
+        ExprNode::Initial => Some(Exprs::ONE),
+        ExprNode::Pre(v) if before.contains_key(&v) => Some(pool.var(before[&v])),
+        ExprNode::Pre(v) if keeping[v.index()] => Some(pool.var(v)),
         _ => None,
     });
     delays::undelayed(draft, &mut map);

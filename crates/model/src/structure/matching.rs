@@ -1,9 +1,9 @@
 //! Maximum matchings of equations and unknowns.
 //!
-//! [`maximum`] is Hopcroft and Karp's algorithm (SIAM J. Comput. 2, 1973); [`Augmenter`] extends a matching by one row
+//! [`maximum`] is Hopcroft and Karp's algorithm (SIAM J. Comput. 2, 1973); [`PathAugmenter`] extends a matching by one row
 //! at a time, which index reduction and initialization need. Both walk without recursion.
 
-use super::incidence::{Incidence, NONE};
+use super::incidence::{IncidenceMatrix, NONE};
 
 /// A matching: each side knows its partner, or [`NONE`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -34,9 +34,9 @@ impl Matching {
 }
 
 /// A matching with as many pairs as possible.
-pub(super) fn maximum(incidence: &Incidence, columns: usize) -> Matching {
+pub(super) fn maximum(incidence: &IncidenceMatrix, columns: usize) -> Matching {
     let mut matching = greedy(incidence, columns);
-    let mut search = Phase::new(incidence.rows());
+    let mut search = HopcroftKarpPhase::new(incidence.rows());
     while search.layers(incidence, &matching) {
         search.augment_all(incidence, &mut matching);
     }
@@ -44,7 +44,7 @@ pub(super) fn maximum(incidence: &Incidence, columns: usize) -> Matching {
 }
 
 /// Rows with few columns first, each with the first free one.
-fn greedy(incidence: &Incidence, columns: usize) -> Matching {
+fn greedy(incidence: &IncidenceMatrix, columns: usize) -> Matching {
     let mut matching = Matching::empty(incidence.rows(), columns);
     let mut order: Vec<u32> = (0..incidence.rows() as u32).collect();
     order.sort_by_key(|&r| incidence.solvable(r).len().min(4));
@@ -58,20 +58,20 @@ fn greedy(incidence: &Incidence, columns: usize) -> Matching {
 }
 
 /// One phase of Hopcroft and Karp: breadth-first layers, then disjoint shortest augmenting paths.
-struct Phase {
+struct HopcroftKarpPhase {
     layer: Vec<u32>,
     next: Vec<u32>,
     queue: Vec<u32>,
     path: Vec<u32>,
 }
 
-impl Phase {
+impl HopcroftKarpPhase {
     fn new(rows: usize) -> Self {
-        Phase { layer: vec![NONE; rows], next: vec![0; rows], queue: Vec::new(), path: Vec::new() }
+        HopcroftKarpPhase { layer: vec![NONE; rows], next: vec![0; rows], queue: Vec::new(), path: Vec::new() }
     }
 
     /// Numbers the rows by distance from a free row; false when no free column can be reached.
-    fn layers(&mut self, incidence: &Incidence, matching: &Matching) -> bool {
+    fn layers(&mut self, incidence: &IncidenceMatrix, matching: &Matching) -> bool {
         self.layer.fill(NONE);
         self.next.fill(0);
         self.queue.clear();
@@ -97,7 +97,7 @@ impl Phase {
         found
     }
 
-    fn augment_all(&mut self, incidence: &Incidence, matching: &mut Matching) {
+    fn augment_all(&mut self, incidence: &IncidenceMatrix, matching: &mut Matching) {
         for row in 0..matching.column_of.len() as u32 {
             if matching.column_of[row as usize] == NONE {
                 self.augment(incidence, matching, row);
@@ -106,7 +106,7 @@ impl Phase {
     }
 
     /// Depth first along the layers; each row's columns are tried once in a phase.
-    fn augment(&mut self, incidence: &Incidence, matching: &mut Matching, start: u32) {
+    fn augment(&mut self, incidence: &IncidenceMatrix, matching: &mut Matching, start: u32) {
         self.path.clear();
         self.path.push(start);
         while let Some(&row) = self.path.last() {
@@ -127,7 +127,7 @@ impl Phase {
     }
 
     /// Gives every row of the path the column it was looking at.
-    fn flip(&mut self, incidence: &Incidence, matching: &mut Matching) {
+    fn flip(&mut self, incidence: &IncidenceMatrix, matching: &mut Matching) {
         for &row in &self.path {
             let c = incidence.solvable(row)[self.next[row as usize] as usize - 1];
             matching.join(row, c);
@@ -137,7 +137,7 @@ impl Phase {
 
 /// Finds augmenting paths from single rows.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Augmenter {
+pub(super) struct PathAugmenter {
     row_mark: Vec<u32>,
     column_mark: Vec<u32>,
     stamp: u32,
@@ -148,13 +148,13 @@ pub(super) struct Augmenter {
     pub columns_seen: Vec<u32>,
 }
 
-impl Augmenter {
+impl PathAugmenter {
     /// Matches `row`, moving other rows to other columns as needed; entries (row, position in it, column) for which `usable`
-    /// says false are left alone. If it fails, [`Augmenter::rows_seen`] holds the rows that share too few columns, `row`
-    /// among them, and [`Augmenter::columns_seen`] these columns.
+    /// says false are left alone. If it fails, [`PathAugmenter::rows_seen`] holds the rows that share too few columns, `row`
+    /// among them, and [`PathAugmenter::columns_seen`] these columns.
     pub fn augment(
         &mut self,
-        incidence: &Incidence,
+        incidence: &IncidenceMatrix,
         matching: &mut Matching,
         row: u32,
         usable: impl Fn(u32, usize, u32) -> bool,
@@ -180,7 +180,7 @@ impl Augmenter {
 
     fn deepen(
         &mut self,
-        incidence: &Incidence,
+        incidence: &IncidenceMatrix,
         matching: &Matching,
         row: u32,
         position: u32,
@@ -222,7 +222,7 @@ impl Augmenter {
         self.rows_seen.push(row);
     }
 
-    fn flip(&mut self, incidence: &Incidence, matching: &mut Matching) {
+    fn flip(&mut self, incidence: &IncidenceMatrix, matching: &mut Matching) {
         for &(row, position) in &self.path {
             matching.join(row, incidence.solvable(row)[position as usize - 1]);
         }
@@ -265,13 +265,13 @@ mod tests {
     proptest! {
         #[test]
         fn both_find_the_largest_matching(rows in graph()) {
-            let incidence = Incidence::of(&rows);
+            let incidence = IncidenceMatrix::of(&rows);
             let best = brute(&rows, &mut vec![false; 6], 0);
             let all = maximum(&incidence, 6);
             prop_assert!(consistent(&rows, &all));
             prop_assert_eq!(all.size(), best);
             let mut one_by_one = Matching::empty(rows.len(), 6);
-            let mut augmenter = Augmenter::default();
+            let mut augmenter = PathAugmenter::default();
             let found = (0..rows.len() as u32)
                 .filter(|&r| augmenter.augment(&incidence, &mut one_by_one, r, |_, _, _| true))
                 .count();
@@ -282,10 +282,10 @@ mod tests {
 
     #[test]
     fn a_failed_search_shows_the_rows_that_compete() {
-        let incidence = Incidence::of(&[vec![0], vec![1, 2], vec![0]]);
+        let incidence = IncidenceMatrix::of(&[vec![0], vec![1, 2], vec![0]]);
         let mut matching = maximum(&incidence, 3);
         let free = matching.column_of.iter().position(|&c| c == NONE).expect("one too many") as u32;
-        let mut augmenter = Augmenter::default();
+        let mut augmenter = PathAugmenter::default();
         assert!(!augmenter.augment(&incidence, &mut matching, free, |_, _, _| true));
         augmenter.rows_seen.sort_unstable();
         assert_eq!(augmenter.rows_seen, [0, 2]);
@@ -298,6 +298,6 @@ mod tests {
         let rows: Vec<Vec<u32>> = (0..n).map(|r| if r == 0 { vec![0] } else { vec![r - 1, r] }).collect();
         let mut shuffled = rows.clone();
         shuffled.reverse();
-        assert_eq!(maximum(&Incidence::of(&shuffled), n as usize).size(), n as usize);
+        assert_eq!(maximum(&IncidenceMatrix::of(&shuffled), n as usize).size(), n as usize);
     }
 }

@@ -1,14 +1,14 @@
 //! What the analysis says when a model cannot be solved: whole groups, by name, with the reason where a known pattern
 //! shows it.
 
-use super::draft::{Draft, Role};
-use super::dulmage_mendelsohn::Part;
-use super::parameters::Known;
+use super::draft::{DaeDraft, SystemRole};
+use super::dulmage_mendelsohn::DecompositionPart;
+use super::parameters::SignAnalysis;
 use super::places;
-use super::regularity::Singularity;
+use super::regularity::StructuralSingularity;
 use super::starts;
 use super::{Alias, Unknown};
-use crate::flat::{Equation, Origin, OriginKind};
+use crate::flat::{ElementOrigin, FlatEquation, OriginKind};
 use bramah_expr::{ExprId, VarId};
 use bramah_syntax::diag::{Code, Diagnostic, Severity};
 
@@ -16,7 +16,7 @@ use bramah_syntax::diag::{Code, Diagnostic, Severity};
 const MOST_ITEMS: usize = 10;
 
 /// Parameters whose bindings use each other.
-pub(super) fn cyclic_parameters(draft: &Draft, circle: &[VarId]) -> Diagnostic {
+pub(super) fn cyclic_parameters(draft: &DaeDraft, circle: &[VarId]) -> Diagnostic {
     let names: Vec<String> = circle.iter().map(|&v| name(draft, v)).collect();
     let message = match names.as_slice() {
         [one] => format!("parameter {one} depends on itself"),
@@ -33,7 +33,7 @@ pub(super) fn cyclic_parameters(draft: &Draft, circle: &[VarId]) -> Diagnostic {
 
 /// Two names of one quantity with different starts: a contradiction, unless one of them is fixed, to which the other one
 /// yields.
-pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Alias) -> Diagnostic {
+pub(super) fn contradicting_aliases(draft: &DaeDraft, known: &mut SignAnalysis, alias: Alias) -> Diagnostic {
     let mut value = |v: VarId| {
         let start = draft.variables[v.index()].start;
         start.map_or(Some(0.0), |e| known.value(&draft.exprs, e)).map_or("?".to_owned(), |x| format!("{x}"))
@@ -69,8 +69,8 @@ pub(super) fn contradicting_aliases(draft: &Draft, known: &mut Known, alias: Ali
 }
 
 /// A constraint that would have to be differentiated but cannot be.
-pub(super) fn not_differentiable(draft: &Draft, equation: &Equation, v: VarId) -> Diagnostic {
-    let input = draft.role(v) == Role::Input;
+pub(super) fn not_differentiable(draft: &DaeDraft, equation: &FlatEquation, v: VarId) -> Diagnostic {
+    let input = draft.role(v) == SystemRole::Input;
     let message = if input {
         format!("the derivative of the input {} is needed, but inputs have none", name(draft, v))
     } else {
@@ -91,7 +91,7 @@ pub(super) fn not_differentiable(draft: &Draft, equation: &Equation, v: VarId) -
 }
 
 /// A constraint whose unknowns cancel when it is differentiated: another equation says the same, or contradicts it.
-pub(super) fn cancelling(draft: &Draft, equation: &Equation) -> Diagnostic {
+pub(super) fn cancelling(draft: &DaeDraft, equation: &FlatEquation) -> Diagnostic {
     let message = format!("the equation `{}` determines nothing", sides(draft, equation));
     let made = Diagnostic::new(Code::Singular, message)
         .at(equation.origin.span, "its unknowns cancel")
@@ -100,7 +100,7 @@ pub(super) fn cancelling(draft: &Draft, equation: &Equation) -> Diagnostic {
 }
 
 /// Equations whose unknowns cancel when they are added up, while something else is left.
-pub(super) fn contradiction(draft: &Draft, equations: &[Equation], left: ExprId) -> Diagnostic {
+pub(super) fn contradiction(draft: &DaeDraft, equations: &[FlatEquation], left: ExprId) -> Diagnostic {
     let message =
         format!("{} equations contradict each other: together they say `0 = {}`", equations.len(), draft.text(left));
     with_equations(draft, Diagnostic::new(Code::Overdetermined, message), equations).help(
@@ -109,7 +109,7 @@ pub(super) fn contradiction(draft: &Draft, equations: &[Equation], left: ExprId)
 }
 
 /// Equations of which one follows from the others, and unknowns that therefore can change together by these parts.
-pub(super) fn repeated(draft: &Draft, equations: &[Equation], free: &[(VarId, f64)]) -> Diagnostic {
+pub(super) fn repeated(draft: &DaeDraft, equations: &[FlatEquation], free: &[(VarId, f64)]) -> Diagnostic {
     let message = format!("each of {} equations follows from the others", equations.len());
     let unknowns: Vec<VarId> = free.iter().map(|(v, _)| *v).collect();
     let names: Vec<String> = unknowns.iter().map(|&v| name(draft, v)).collect();
@@ -136,7 +136,7 @@ pub(super) fn repeated(draft: &Draft, equations: &[Equation], free: &[(VarId, f6
 }
 
 /// `reinit` of something that follows from other quantities.
-pub(super) fn reinit_of_no_state(draft: &Draft, v: VarId, origin: Origin) -> Diagnostic {
+pub(super) fn reinit_of_no_state(draft: &DaeDraft, v: VarId, origin: ElementOrigin) -> Diagnostic {
     let message = format!("{} cannot be set by `reinit`, because it follows from other quantities", name(draft, v));
     let instance = &draft.instances[origin.instance as usize];
     Diagnostic::new(Code::ReinitNoState, message)
@@ -147,7 +147,7 @@ pub(super) fn reinit_of_no_state(draft: &Draft, v: VarId, origin: Origin) -> Dia
 }
 
 /// A position that a constraint of parameters alone fixes, though the circuit has an acceleration for it.
-pub(super) fn held_still(draft: &Draft, bodies: &[VarId], equation: &Equation) -> Diagnostic {
+pub(super) fn held_still(draft: &DaeDraft, bodies: &[VarId], equation: &FlatEquation) -> Diagnostic {
     let names: Vec<String> = bodies.iter().map(|&v| name(draft, v)).collect();
     let mut made = Diagnostic::new(Code::HeldStill, format!("{} cannot change", listed(&names)));
     if let Some(&first) = bodies.first() {
@@ -160,7 +160,7 @@ pub(super) fn held_still(draft: &Draft, bodies: &[VarId], equation: &Equation) -
 }
 
 /// Constraints that no choice of states satisfies.
-pub(super) fn dependent_constraints(draft: &Draft, equations: &[Equation], unknowns: &[Unknown]) -> Diagnostic {
+pub(super) fn dependent_constraints(draft: &DaeDraft, equations: &[FlatEquation], unknowns: &[Unknown]) -> Diagnostic {
     let made = Diagnostic::new(Code::Overdetermined, "constraints and their derivatives depend on each other");
     let made = with_equations(draft, made, equations);
     let names: Vec<String> = unknowns.iter().map(|&u| unknown_name(draft, u)).collect();
@@ -168,15 +168,15 @@ pub(super) fn dependent_constraints(draft: &Draft, equations: &[Equation], unkno
 }
 
 /// Initial equations and fixed starts that say too much.
-pub(super) fn initially_contradicting(draft: &Draft, extra: &Equation, group: &[Equation]) -> Diagnostic {
-    let conditions: Vec<Equation> = group.iter().filter(|e| is_condition(draft, e)).copied().collect();
+pub(super) fn initially_contradicting(draft: &DaeDraft, extra: &FlatEquation, group: &[FlatEquation]) -> Diagnostic {
+    let conditions: Vec<FlatEquation> = group.iter().filter(|e| is_condition(draft, e)).copied().collect();
     let message = if extra.origin.kind == OriginKind::Start {
         format!("the fixed start of `{}` is one condition too many", draft.text(extra.lhs))
     } else {
         format!("the initial equation `{}` is one condition too many", sides(draft, extra))
     };
     let made = Diagnostic::new(Code::InitialOver, message);
-    let others: Vec<Equation> = conditions.iter().filter(|e| *e != extra).copied().collect();
+    let others: Vec<FlatEquation> = conditions.iter().filter(|e| *e != extra).copied().collect();
     let made = with_equations(draft, made.at(extra.origin.span, "this one is too much"), &others);
     let (have, want) = (counted(conditions.len(), "condition"), conditions.len().max(1) - 1);
     let note = match want {
@@ -186,20 +186,20 @@ pub(super) fn initially_contradicting(draft: &Draft, extra: &Equation, group: &[
     made.note(note).help("remove one of these conditions, for instance by `fixed = false`")
 }
 
-fn is_condition(draft: &Draft, equation: &Equation) -> bool {
+fn is_condition(draft: &DaeDraft, equation: &FlatEquation) -> bool {
     let initial = &draft.initial_equations;
     equation.origin.kind == OriginKind::Start || initial.iter().any(|e| e.origin == equation.origin)
 }
 
 /// Unknowns that nothing determines at the start.
-pub(super) fn initially_undetermined(draft: &Draft, open: &[Unknown]) -> Diagnostic {
+pub(super) fn initially_undetermined(draft: &DaeDraft, open: &[Unknown]) -> Diagnostic {
     let names: Vec<String> = open.iter().map(|&u| unknown_name(draft, u)).collect();
     let made = Diagnostic::new(Code::InitialFailed, format!("nothing determines {} at the start", listed(&names)));
     made.help("add an initial equation or a fixed start value")
 }
 
 /// Start values that the compiler fixed to make the start determined.
-pub(super) fn chosen_starts(draft: &Draft, chosen: &[VarId]) -> Diagnostic {
+pub(super) fn chosen_starts(draft: &DaeDraft, chosen: &[VarId]) -> Diagnostic {
     let names: Vec<String> = chosen.iter().map(|&v| name(draft, v)).collect();
     let text = format!("start values used although not `fixed`: {}", listed(&names));
     let mut made = Diagnostic::new(Code::InitialUnder, text);
@@ -212,7 +212,7 @@ pub(super) fn chosen_starts(draft: &Draft, chosen: &[VarId]) -> Diagnostic {
 }
 
 /// A group of nodes whose flows add up to nothing, so that only differences of their levels matter.
-pub(super) fn closed_group(draft: &Draft, aliases: &[Alias], flows: &[VarId]) -> Diagnostic {
+pub(super) fn closed_group(draft: &DaeDraft, aliases: &[Alias], flows: &[VarId]) -> Diagnostic {
     let mut names: Vec<VarId> = flows.to_vec();
     names.extend(aliases.iter().filter(|a| flows.binary_search(&a.target).is_ok()).map(|a| a.variable));
     let variable = |v: &VarId| &draft.variables[v.index()];
@@ -255,39 +255,40 @@ pub(super) fn closed_group(draft: &Draft, aliases: &[Alias], flows: &[VarId]) ->
 /// A structurally singular system.
 ///
 /// `aliases` are those eliminated from this system already.
-pub(super) fn singular(draft: &Draft, aliases: &[Alias], found: &Singularity) -> Diagnostic {
-    let report = Report { draft, aliases, found };
+pub(super) fn singular(draft: &DaeDraft, aliases: &[Alias], found: &StructuralSingularity) -> Diagnostic {
+    let report = SingularityReport { draft, aliases, found };
     let made = report.headline();
     report.with_facts(made)
 }
 
-struct Report<'a> {
-    draft: &'a Draft,
+struct SingularityReport<'a> {
+    draft: &'a DaeDraft,
     aliases: &'a [Alias],
-    found: &'a Singularity,
+    found: &'a StructuralSingularity,
 }
 
-impl Report<'_> {
-    fn under(&self) -> &Part {
+impl SingularityReport<'_> {
+    fn under(&self) -> &DecompositionPart {
         &self.found.parts.under
     }
 
-    fn over(&self) -> &Part {
+    fn over(&self) -> &DecompositionPart {
         &self.found.parts.over
     }
 
-    fn variables(&self, part: &Part) -> Vec<VarId> {
+    fn variables(&self, part: &DecompositionPart) -> Vec<VarId> {
         part.columns.iter().map(|&c| self.found.overview.columns[c as usize]).collect()
     }
 
-    fn equations(&self, part: &Part) -> Vec<Equation> {
+    fn equations(&self, part: &DecompositionPart) -> Vec<FlatEquation> {
         part.rows.iter().map(|&r| self.draft.equations[r as usize]).collect()
     }
 
     /// The recognised pattern, or just the parts.
     fn headline(&self) -> Diagnostic {
         let unknowns = self.variables(self.under());
-        let empty: Vec<Equation> = self.equations(self.over()).into_iter().filter(|e| self.holds_nothing(e)).collect();
+        let empty: Vec<FlatEquation> =
+            self.equations(self.over()).into_iter().filter(|e| self.holds_nothing(e)).collect();
         let all_known = empty.iter().find(|e| !self.draft.exprs.dependencies(&[e.lhs, e.rhs]).vars.is_empty());
         if let Some(equation) = all_known {
             return self.without_unknowns(equation);
@@ -319,7 +320,7 @@ impl Report<'_> {
                 .help("add an equation, give it a value, or make it a top-level `input`");
         }
         if unknowns.is_empty() {
-            let Part { rows, columns } = self.over();
+            let DecompositionPart { rows, columns } = self.over();
             let message = format!("{} equations for {} unknowns", rows.len(), columns.len());
             let made = Diagnostic::new(Code::Overdetermined, message);
             return with_equations(self.draft, made, &self.equations(self.over()));
@@ -331,7 +332,7 @@ impl Report<'_> {
     }
 
     /// An equation of parameters, inputs and numbers only.
-    fn without_unknowns(&self, equation: &Equation) -> Diagnostic {
+    fn without_unknowns(&self, equation: &FlatEquation) -> Diagnostic {
         let used = self.draft.exprs.dependencies(&[equation.lhs, equation.rhs]).vars;
         let names: Vec<String> = used.iter().map(|&v| name(self.draft, v)).collect();
         let message = format!("the equation `{}` holds no unknown", sides(self.draft, equation));
@@ -390,7 +391,7 @@ impl Report<'_> {
     }
 
     /// The unknowns of a part, a line for each component.
-    fn part_note(&self, made: Diagnostic, title: &str, part: &Part) -> Diagnostic {
+    fn part_note(&self, made: Diagnostic, title: &str, part: &DecompositionPart) -> Diagnostic {
         if part.columns.is_empty() {
             return made;
         }
@@ -429,13 +430,13 @@ impl Report<'_> {
         }
     }
 
-    fn owner(&self, equation: &Equation) -> String {
+    fn owner(&self, equation: &FlatEquation) -> String {
         self.draft.instances[equation.origin.instance as usize].name.clone()
     }
 
-    fn holds_nothing(&self, equation: &Equation) -> bool {
+    fn holds_nothing(&self, equation: &FlatEquation) -> bool {
         let found = self.draft.exprs.dependencies(&[equation.lhs, equation.rhs]);
-        let unknown = |v: &VarId| matches!(self.draft.role(*v), Role::Continuous | Role::Discrete);
+        let unknown = |v: &VarId| matches!(self.draft.role(*v), SystemRole::Continuous | SystemRole::Discrete);
         !found.vars.iter().chain(&found.ders).any(unknown)
     }
 
@@ -477,7 +478,7 @@ impl Report<'_> {
 }
 
 /// What the potentials are called, and what fixes them.
-fn kind_of_level(draft: &Draft, unknowns: &[VarId]) -> (&'static str, &'static str) {
+fn kind_of_level(draft: &DaeDraft, unknowns: &[VarId]) -> (&'static str, &'static str) {
     let unit = unknowns.iter().find_map(|v| draft.variables[v.index()].unit.as_deref());
     match unit {
         Some("Pa" | "bar") => ("pressure level", "connect a tank, a volume or a fixed pressure to one of these nodes"),
@@ -489,7 +490,7 @@ fn kind_of_level(draft: &Draft, unknowns: &[VarId]) -> (&'static str, &'static s
     }
 }
 
-fn with_equations(draft: &Draft, mut made: Diagnostic, equations: &[Equation]) -> Diagnostic {
+fn with_equations(draft: &DaeDraft, mut made: Diagnostic, equations: &[FlatEquation]) -> Diagnostic {
     for equation in equations.iter().take(MOST_ITEMS) {
         made = made.at(equation.origin.span, format!("`{}`{}", sides(draft, equation), reason(equation.origin.kind)));
     }
@@ -502,7 +503,7 @@ fn with_equations(draft: &Draft, mut made: Diagnostic, equations: &[Equation]) -
     }
 }
 
-fn located(draft: &Draft, made: Diagnostic, equation: &Equation) -> Diagnostic {
+fn located(draft: &DaeDraft, made: Diagnostic, equation: &FlatEquation) -> Diagnostic {
     let instance = &draft.instances[equation.origin.instance as usize];
     made.instance(instance.name.clone()).class(instance.class.clone())
 }
@@ -519,16 +520,16 @@ fn reason(kind: OriginKind) -> &'static str {
     }
 }
 
-fn sides(draft: &Draft, equation: &Equation) -> String {
+fn sides(draft: &DaeDraft, equation: &FlatEquation) -> String {
     let side = |e: ExprId| draft.text(e);
     format!("{} = {}", side(equation.lhs), side(equation.rhs))
 }
 
-fn name(draft: &Draft, v: VarId) -> String {
+fn name(draft: &DaeDraft, v: VarId) -> String {
     format!("`{}`", draft.variables[v.index()].name)
 }
 
-fn unknown_name(draft: &Draft, unknown: Unknown) -> String {
+fn unknown_name(draft: &DaeDraft, unknown: Unknown) -> String {
     match unknown {
         Unknown::Var(v) => name(draft, v),
         Unknown::Der(v) => format!("`der({})`", draft.variables[v.index()].name),

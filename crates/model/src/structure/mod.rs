@@ -39,7 +39,7 @@ mod zeros;
 pub use analysis::analyze;
 
 use crate::flat;
-use bramah_expr::{ExprId, Exprs, Rel, VarId};
+use bramah_expr::{ExprId, Exprs, RelationalOp, VarId};
 
 /// The model as the numerical stages see it.
 #[derive(Clone, Debug, Default)]
@@ -50,15 +50,15 @@ pub struct Dae {
     pub exprs: Exprs,
     /// The flat variables in their order, then those made here (modes, conditions, dummy derivatives); made ones are
     /// `hidden` and carry a name that a message may show, such as `der(cyl.x)` or the text of the relation.
-    pub variables: Vec<flat::Variable>,
+    pub variables: Vec<flat::FlatVariable>,
     /// Component instances, as in the flat model.
     pub instances: Vec<flat::InstanceInfo>,
     /// Enumeration types, as in the flat model.
     pub enumerations: Vec<(String, Vec<String>)>,
     /// The experiment annotation.
-    pub experiment: flat::Experiment,
+    pub experiment: flat::ExperimentAnnotation,
     /// All equations that blocks refer to, for messages.
-    pub equations: Vec<flat::Equation>,
+    pub equations: Vec<flat::FlatEquation>,
     /// Parameters and constants with a binding, sorted so that each binding refers to earlier ones only.
     pub parameters: Vec<VarId>,
     /// Parameters with `fixed = false`: unknowns of the initial system, then constant.
@@ -74,26 +74,26 @@ pub struct Dae {
     /// Discrete unknowns (user's, modes and conditions), each assigned in exactly one `event` block.
     pub discrete: Vec<VarId>,
     /// All continuous unknowns given time, parameters, inputs, states and discrete values.
-    pub continuous: Vec<Block>,
+    pub continuous: Vec<BltBlock>,
     /// The same with all discrete unknowns, at an event, given `pre` values. Contains `when` equations as
     /// `v = if fires then value else pre(v)`.
-    pub event: Vec<Block>,
+    pub event: Vec<BltBlock>,
     /// Everything (states, derivatives, algebraic, discrete, free parameters) at the start.
-    pub initial: Vec<Block>,
+    pub initial: Vec<BltBlock>,
     /// Relations whose change is an event.
-    pub crossings: Vec<Crossing>,
+    pub crossings: Vec<ZeroCrossing>,
     /// `sample` expressions: the mode variable is true exactly at its event.
-    pub samples: Vec<Sample>,
+    pub samples: Vec<SampleEvent>,
     /// `delay` expressions.
-    pub delays: Vec<Delay>,
+    pub delays: Vec<DelayInput>,
     /// `reinit`, `terminate` and `assert` inside `when`, in order.
-    pub actions: Vec<Action>,
+    pub actions: Vec<EventAction>,
     /// `assert`s outside `when`.
-    pub asserts: Vec<flat::Assert>,
+    pub asserts: Vec<flat::FlatAssertion>,
     /// Groups among which the states were chosen; the solver asks for another choice when a group's pivots degenerate.
-    pub selections: Vec<Selection>,
+    pub selections: Vec<StateSelection>,
     /// What may be integrated in place of states.
-    pub conserved: Vec<Conserved>,
+    pub conserved: Vec<ConservedQuantity>,
     /// Expressions that must vanish at the start, each with its equation: fixed starts of variables that constraints
     /// tie to others, which hold only if they are consistent. Checked after the initial system is solved.
     pub initial_checks: Vec<(ExprId, u32)>,
@@ -132,18 +132,18 @@ pub enum Unknown {
 
 /// A step of a sorted system.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Block {
+pub enum BltBlock {
     /// One explicit assignment.
-    Assign(Assign),
+    Assign(ExplicitAssignment),
     /// An algebraic loop, torn.
-    Loop(Loop),
+    Loop(AlgebraicLoop),
     /// A loop through discrete equations; only in `event` and `initial`.
-    Mixed(Mixed),
+    Mixed(MixedLoop),
 }
 
 /// `unknown := value`
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Assign {
+pub struct ExplicitAssignment {
     /// What is computed.
     pub unknown: Unknown,
     /// From what.
@@ -154,11 +154,11 @@ pub struct Assign {
 
 /// An algebraic loop: given the tearing variables, `inner` follows explicitly, and `residuals` must vanish.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Loop {
+pub struct AlgebraicLoop {
     /// Iteration unknowns, as many as residuals.
     pub tearing: Vec<Unknown>,
     /// Explicit assignments, in order.
-    pub inner: Vec<Assign>,
+    pub inner: Vec<ExplicitAssignment>,
     /// Expressions that must be zero, each with its equation.
     pub residuals: Vec<(ExprId, u32)>,
     /// True when the residuals are affine in the tearing variables (through `inner`).
@@ -167,38 +167,38 @@ pub struct Loop {
 
 /// A loop through discrete equations: iterate `continuous`, then `discrete`, until the discrete values stay.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mixed {
-    /// The continuous part with discrete values frozen, sorted: `Assign` and `Loop` only.
-    pub continuous: Vec<Block>,
+pub struct MixedLoop {
+    /// The continuous part with discrete values frozen, sorted: `ExplicitAssignment` and `AlgebraicLoop` only.
+    pub continuous: Vec<BltBlock>,
     /// The discrete equations in an order that follows their dependencies as far as possible.
-    pub discrete: Vec<Assign>,
+    pub discrete: Vec<ExplicitAssignment>,
 }
 
 /// A relation, or a `floor`, with its discrete stand-in.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct ZeroCrossing {
     /// The discrete variable that stands for it in all equations.
     pub mode: VarId,
     /// What is watched.
     pub kind: CrossingKind,
     /// The place of the relation and the instance it stands in.
-    pub origin: flat::Origin,
+    pub origin: flat::ElementOrigin,
 }
 
 /// What is watched.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CrossingKind {
     /// `left rel right` with at least one continuous side.
-    Relation(Rel, ExprId, ExprId),
+    Relation(RelationalOp, ExprId, ExprId),
     /// `time rel at`: `at` depends on parameters and discrete values only, so the event's time is known exactly.
-    Time(Rel, ExprId),
+    Time(RelationalOp, ExprId),
     /// `floor(argument)`.
     Floor(ExprId),
 }
 
 /// A `sample(start, interval)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sample {
+pub struct SampleEvent {
     /// True exactly at the sampling events.
     pub mode: VarId,
     /// First time.
@@ -206,12 +206,12 @@ pub struct Sample {
     /// Interval, positive.
     pub interval: ExprId,
     /// Where it stands.
-    pub origin: flat::Origin,
+    pub origin: flat::ElementOrigin,
 }
 
 /// A `delay(source, time)`: to the equations an input, whose trajectory the run itself records.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Delay {
+pub struct DelayInput {
     /// The input that stands for it in all equations. At the start it is the source itself.
     pub variable: VarId,
     /// What is delayed; of other delays only earlier ones.
@@ -219,34 +219,34 @@ pub struct Delay {
     /// By how much, in seconds; over parameters.
     pub time: ExprId,
     /// Where it stands.
-    pub origin: flat::Origin,
+    pub origin: flat::ElementOrigin,
 }
 
 /// Something that happens once when a `when` fires. `fires` is an expression over discrete values and `pre`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Action {
+pub struct EventAction {
     /// True at the event iteration in which it happens.
     pub fires: ExprId,
     /// What happens.
-    pub kind: ActionKind,
+    pub kind: EventActionKind,
     /// Where it stands.
-    pub origin: flat::Origin,
+    pub origin: flat::ElementOrigin,
 }
 
 /// What happens.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ActionKind {
+pub enum EventActionKind {
     /// A state gets a new value.
     Reinit(VarId, ExprId),
     /// The run ends as asked.
-    Terminate(flat::Message),
+    Terminate(flat::MessageTemplate),
     /// A condition is checked.
-    Assert(flat::Assert),
+    Assert(flat::FlatAssertion),
 }
 
 /// A quantity that may be integrated in place of a state, which then follows from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Conserved {
+pub struct ConservedQuantity {
     /// The state, one of `Dae::states`.
     pub state: VarId,
     /// Stands for the quantity as an unknown of the solver; no block computes it.
@@ -261,7 +261,7 @@ pub struct Conserved {
 
 /// A group of constraints with more differentiated candidates than degrees of freedom.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Selection {
+pub struct StateSelection {
     /// Candidates; the derivatives of `candidates.len() - rows.len()` of them are integrated, the rest are dummies.
     pub candidates: Vec<VarId>,
     /// Those chosen as dummies now, as many as rows.

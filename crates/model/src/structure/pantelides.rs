@@ -3,18 +3,18 @@
 //! An equation that holds no derivative of highest order beyond those already taken is a constraint; it is
 //! differentiated, with all equations that share its unknowns, until every equation has an unknown of its own.
 
-use super::draft::{Draft, Role, RowKind, Signed};
-use super::incidence::{Incidence, NONE, Scanner};
-use super::matching::{Augmenter, Matching};
+use super::draft::{DaeDraft, EquationRole, SignedVariable, SystemRole};
+use super::incidence::{IncidenceMatrix, IncidenceScanner, NONE};
+use super::matching::{Matching, PathAugmenter};
 use super::{Unknown, messages};
-use crate::flat::{Equation, Origin, OriginKind, Type};
-use bramah_expr::differentiate::{Leaf, TimeDerivative};
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use crate::flat::{ElementOrigin, FlatEquation, OriginKind, ScalarType};
+use bramah_expr::differentiate::{DerivativeLeaf, TimeDerivative};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::diag::Diagnostic;
 
 /// A variable or derivative, with its neighbours in the chain of derivatives.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Column {
+pub(super) struct ReductionColumn {
     pub unknown: Unknown,
     pub derivative: u32,
     pub integral: u32,
@@ -22,11 +22,11 @@ pub(super) struct Column {
 
 /// Continuous equations and their unknowns with all derivatives.
 #[derive(Debug, Default)]
-pub(super) struct Reduction {
-    pub columns: Vec<Column>,
+pub(super) struct IndexReduction {
+    pub columns: Vec<ReductionColumn>,
     of_var: Vec<u32>,
     of_der: Vec<u32>,
-    /// Index into `Draft::equations`, by row.
+    /// Index into `DaeDraft::equations`, by row.
     pub equations: Vec<u32>,
     /// The row that is the derivative of a row, or [`NONE`].
     pub derivative: Vec<u32>,
@@ -34,26 +34,27 @@ pub(super) struct Reduction {
     pub integral: Vec<u32>,
     /// How often a row has been differentiated.
     order: Vec<usize>,
-    incidence: Incidence,
-    scanner: Scanner,
+    incidence: IncidenceMatrix,
+    scanner: IncidenceScanner,
     time_derivative: TimeDerivative,
 }
 
-impl Reduction {
+impl IndexReduction {
     /// The columns and rows of the continuous equations, undifferentiated.
-    pub fn new(draft: &mut Draft) -> Self {
-        let mut made = Reduction {
+    pub fn new(draft: &mut DaeDraft) -> Self {
+        let mut made = IndexReduction {
             of_var: vec![NONE; draft.variables.len()],
             of_der: vec![NONE; draft.variables.len()],
-            ..Reduction::default()
+            ..IndexReduction::default()
         };
-        for v in draft.with_role(Role::Continuous) {
+        for v in draft.with_role(SystemRole::Continuous) {
             made.of_var[v.index()] = made.push_column(Unknown::Var(v), NONE);
         }
         made.link(draft);
         made.add_occurring_derivatives(draft);
-        let rows: Vec<u32> =
-            (0..draft.equations.len() as u32).filter(|&i| draft.kinds[i as usize] == RowKind::Continuous).collect();
+        let rows: Vec<u32> = (0..draft.equations.len() as u32)
+            .filter(|&i| draft.kinds[i as usize] == EquationRole::Continuous)
+            .collect();
         for row in rows {
             made.push_row(draft, row, NONE);
         }
@@ -99,7 +100,7 @@ impl Reduction {
     }
 
     /// The column of a leaf that is an unknown or its derivative.
-    pub fn column(&self, draft: &Draft, leaf: Node) -> Option<u32> {
+    pub fn column(&self, draft: &DaeDraft, leaf: ExprNode) -> Option<u32> {
         column(&self.of_var, &self.of_der, &draft.derivative, leaf)
     }
 
@@ -110,14 +111,14 @@ impl Reduction {
 
     fn push_column(&mut self, unknown: Unknown, integral: u32) -> u32 {
         let column = self.columns.len() as u32;
-        self.columns.push(Column { unknown, derivative: NONE, integral });
+        self.columns.push(ReductionColumn { unknown, derivative: NONE, integral });
         if integral != NONE {
             self.columns[integral as usize].derivative = column;
         }
         column
     }
 
-    fn link(&mut self, draft: &Draft) {
+    fn link(&mut self, draft: &DaeDraft) {
         for (i, link) in draft.derivative.iter().enumerate() {
             if let (Some(w), true) = (link, self.of_var[i] != NONE) {
                 let (x, w) = (self.of_var[i], self.of_var[w.variable.index()]);
@@ -128,12 +129,12 @@ impl Reduction {
     }
 
     /// Columns for derivatives that stand in continuous equations, in the order of variables.
-    fn add_occurring_derivatives(&mut self, draft: &mut Draft) {
+    fn add_occurring_derivatives(&mut self, draft: &mut DaeDraft) {
         let mut occurs = vec![false; draft.variables.len()];
-        let mut walk = bramah_expr::visit::Walk::default();
+        let mut walk = bramah_expr::visit::NodeTraversal::default();
         let roots: Vec<ExprId> = draft.equations.iter().flat_map(|e| [e.lhs, e.rhs]).collect();
         walk.each(&draft.exprs, &roots, |_, node| {
-            if let Node::Der(v) = node {
+            if let ExprNode::Der(v) = node {
                 occurs[v.index()] = true;
             }
             true
@@ -150,11 +151,11 @@ impl Reduction {
         }
     }
 
-    fn push_row(&mut self, draft: &Draft, equation: u32, integral: u32) -> u32 {
+    fn push_row(&mut self, draft: &DaeDraft, equation: u32, integral: u32) -> u32 {
         let row = self.equations.len() as u32;
-        let Equation { lhs, rhs, .. } = draft.equations[equation as usize];
+        let FlatEquation { lhs, rhs, .. } = draft.equations[equation as usize];
         let (of_var, of_der, derivative) = (&self.of_var, &self.of_der, &draft.derivative);
-        let column = |node: Node| column(of_var, of_der, derivative, node);
+        let column = |node: ExprNode| column(of_var, of_der, derivative, node);
         self.scanner.push(&draft.exprs, [lhs, rhs], column, |_| true, &mut self.incidence);
         self.equations.push(equation);
         self.derivative.push(NONE);
@@ -173,10 +174,10 @@ impl Reduction {
     /// is looked at again where that happens. Where they cancel only beyond what can be seen, orders would grow for
     /// ever: no order of a regular system is above the number of its unknowns, derivatives among them, since each
     /// equation is differentiated by at most the sum of the orders of an assignment (Pryce, BIT 41, 2001).
-    pub fn reduce(&mut self, draft: &mut Draft) -> Result<(), Diagnostic> {
+    pub fn reduce(&mut self, draft: &mut DaeDraft) -> Result<(), Diagnostic> {
         let most = self.columns.len();
         let mut matching = self.first_matching();
-        let mut augmenter = Augmenter::default();
+        let mut augmenter = PathAugmenter::default();
         for first in 0..self.equations.len() as u32 {
             let mut row = first;
             while matching.column_of[row as usize] == NONE {
@@ -200,7 +201,7 @@ impl Reduction {
 
     /// A largest matching with the derivatives of highest order.
     pub fn first_matching(&self) -> Matching {
-        let mut highest = Incidence::default();
+        let mut highest = IncidenceMatrix::default();
         let mut columns = Vec::new();
         for row in 0..self.equations.len() as u32 {
             columns.clear();
@@ -213,7 +214,7 @@ impl Reduction {
     /// Adds the derivatives of these columns and rows. A matched row's derivative gets the derivative of its column.
     fn differentiate_all(
         &mut self,
-        draft: &mut Draft,
+        draft: &mut DaeDraft,
         rows: &[u32],
         columns: &[u32],
         matching: &mut Matching,
@@ -244,10 +245,10 @@ impl Reduction {
 
     /// Fails if the rows of highest order cannot determine one unknown each, a variable and its derivatives counted as
     /// one.
-    fn check_regular(&self, draft: &Draft) -> Result<(), Diagnostic> {
+    fn check_regular(&self, draft: &DaeDraft) -> Result<(), Diagnostic> {
         let rows: Vec<u32> =
             (0..self.equations.len() as u32).filter(|&r| self.derivative[r as usize] == NONE).collect();
-        let mut chains = Incidence::default();
+        let mut chains = IncidenceMatrix::default();
         for &row in &rows {
             let mut columns: Vec<u32> = self.incidence.solvable(row).iter().map(|&c| self.first_of_chain(c)).collect();
             columns.sort_unstable();
@@ -260,7 +261,7 @@ impl Reduction {
     }
 
     /// About the equation of which a row is a derivative.
-    fn determines_nothing(&self, draft: &Draft, mut row: u32) -> Diagnostic {
+    fn determines_nothing(&self, draft: &DaeDraft, mut row: u32) -> Diagnostic {
         while self.integral[row as usize] != NONE {
             row = self.integral[row as usize];
         }
@@ -274,14 +275,14 @@ impl Reduction {
         column
     }
 
-    fn add_derivative(&mut self, draft: &mut Draft, column: u32) {
+    fn add_derivative(&mut self, draft: &mut DaeDraft, column: u32) {
         let v = self.materialize(draft, column);
         let made = self.push_column(Unknown::Der(v), column);
         self.of_der[v.index()] = made;
     }
 
     /// The derivative of this order of the variable of a column that is no derivative.
-    pub fn derivative_of(&mut self, draft: &mut Draft, mut column: u32, order: u32) -> ExprId {
+    pub fn derivative_of(&mut self, draft: &mut DaeDraft, mut column: u32, order: u32) -> ExprId {
         for _ in 0..order {
             if self.columns[column as usize].derivative == NONE {
                 self.add_derivative(draft, column);
@@ -292,9 +293,14 @@ impl Reduction {
     }
 
     /// The derivative of a part of an equation.
-    pub fn differentiate(&mut self, draft: &mut Draft, equation: &Equation, e: ExprId) -> Result<ExprId, Diagnostic> {
+    pub fn differentiate(
+        &mut self,
+        draft: &mut DaeDraft,
+        equation: &FlatEquation,
+        e: ExprId,
+    ) -> Result<ExprId, Diagnostic> {
         for x in draft.exprs.derivatives(e) {
-            if let Some(column) = self.column(draft, Node::Der(x)) {
+            if let Some(column) = self.column(draft, ExprNode::Der(x)) {
                 self.materialize(draft, column);
             }
         }
@@ -306,15 +312,15 @@ impl Reduction {
     }
 
     /// The variable of a column; a derivative becomes a variable of its own, named as the user would write it.
-    pub fn materialize(&mut self, draft: &mut Draft, column: u32) -> VarId {
+    pub fn materialize(&mut self, draft: &mut DaeDraft, column: u32) -> VarId {
         let x = match self.columns[column as usize].unknown {
             Unknown::Var(v) => return v,
             Unknown::Der(x) => x,
         };
         let name = format!("der({})", draft.variables[x.index()].name);
-        let origin = Origin { kind: OriginKind::Differentiated, ..draft.variables[x.index()].origin };
-        let made = draft.make_variable(name, Type::Real, Role::Continuous, origin);
-        draft.derivative[x.index()] = Some(Signed { variable: made, negated: false });
+        let origin = ElementOrigin { kind: OriginKind::Differentiated, ..draft.variables[x.index()].origin };
+        let made = draft.make_variable(name, ScalarType::Real, SystemRole::Continuous, origin);
+        draft.derivative[x.index()] = Some(SignedVariable { variable: made, negated: false });
         self.columns[column as usize].unknown = Unknown::Var(made);
         self.of_der[x.index()] = NONE;
         self.of_var.push(column);
@@ -322,31 +328,31 @@ impl Reduction {
         made
     }
 
-    fn differentiate_row(&mut self, draft: &mut Draft, row: u32) -> Result<u32, Diagnostic> {
+    fn differentiate_row(&mut self, draft: &mut DaeDraft, row: u32) -> Result<u32, Diagnostic> {
         let equation = draft.equations[self.equations[row as usize] as usize];
         let lhs = self.differentiate_side(draft, equation.lhs);
         let rhs = self.differentiate_side(draft, equation.rhs);
         if let Some(v) = undifferentiable(draft, [lhs, rhs]) {
             return Err(messages::not_differentiable(draft, &equation, v));
         }
-        let origin = Origin { kind: OriginKind::Differentiated, ..equation.origin };
-        draft.add_equation(Equation { lhs, rhs, origin }, RowKind::Continuous);
+        let origin = ElementOrigin { kind: OriginKind::Differentiated, ..equation.origin };
+        draft.add_equation(FlatEquation { lhs, rhs, origin }, EquationRole::Continuous);
         Ok(self.push_row(draft, draft.equations.len() as u32 - 1, row))
     }
 
-    fn differentiate_side(&mut self, draft: &mut Draft, e: ExprId) -> ExprId {
+    fn differentiate_side(&mut self, draft: &mut DaeDraft, e: ExprId) -> ExprId {
         let (roles, links) = (&draft.roles, &draft.derivative);
-        let mut leaf = |pool: &mut Exprs, leaf: Leaf| Some(leaf_derivative(pool, roles, links, leaf));
+        let mut leaf = |pool: &mut Exprs, leaf: DerivativeLeaf| Some(leaf_derivative(pool, roles, links, leaf));
         self.time_derivative.derive(&mut draft.exprs, e, &mut leaf).expect("every leaf has an answer")
     }
 }
 
 /// The column of a leaf.
-fn column(of_var: &[u32], of_der: &[u32], links: &[Option<Signed>], leaf: Node) -> Option<u32> {
+fn column(of_var: &[u32], of_der: &[u32], links: &[Option<SignedVariable>], leaf: ExprNode) -> Option<u32> {
     let place = |of: &[u32], v: VarId| of.get(v.index()).copied();
     let found = match leaf {
-        Node::Var(v) => place(of_var, v),
-        Node::Der(v) => match links[v.index()] {
+        ExprNode::Var(v) => place(of_var, v),
+        ExprNode::Der(v) => match links[v.index()] {
             Some(w) => place(of_var, w.variable),
             None => place(of_der, v),
         },
@@ -357,29 +363,34 @@ fn column(of_var: &[u32], of_der: &[u32], links: &[Option<Signed>], leaf: Node) 
 
 /// The time derivative of a variable or of a derivative that is a variable. What has none is marked, since it may stand
 /// in a condition where its derivative does not matter: see [`undifferentiable`].
-fn leaf_derivative(pool: &mut Exprs, roles: &[Role], links: &[Option<Signed>], leaf: Leaf) -> ExprId {
+fn leaf_derivative(
+    pool: &mut Exprs,
+    roles: &[SystemRole],
+    links: &[Option<SignedVariable>],
+    leaf: DerivativeLeaf,
+) -> ExprId {
     let (v, negated) = match leaf {
-        Leaf::Var(v) => (v, false),
-        Leaf::Der(x) => match links[x.index()] {
+        DerivativeLeaf::Var(v) => (v, false),
+        DerivativeLeaf::Der(x) => match links[x.index()] {
             Some(w) => (w.variable, w.negated),
             None => return pool.pre(x),
         },
     };
     let derivative = match (roles[v.index()], links[v.index()]) {
-        (Role::Continuous, Some(w)) => w.expression(pool),
-        (Role::Continuous | Role::Input, _) => pool.der(v),
+        (SystemRole::Continuous, Some(w)) => w.expression(pool),
+        (SystemRole::Continuous | SystemRole::Input, _) => pool.der(v),
         _ => Exprs::ZERO,
     };
     if negated { pool.neg(derivative) } else { derivative }
 }
 
 /// A variable whose derivative is needed but does not exist: an input, or something of too high an order.
-fn undifferentiable(draft: &Draft, sides: [ExprId; 2]) -> Option<VarId> {
+fn undifferentiable(draft: &DaeDraft, sides: [ExprId; 2]) -> Option<VarId> {
     let mut found = None;
-    bramah_expr::visit::Walk::default().each(&draft.exprs, &sides, |_, node| {
+    bramah_expr::visit::NodeTraversal::default().each(&draft.exprs, &sides, |_, node| {
         match node {
-            Node::Der(v) if draft.role(v) == Role::Input => found = found.or(Some(v)),
-            Node::Pre(v) if draft.role(v) == Role::Continuous => found = found.or(Some(v)),
+            ExprNode::Der(v) if draft.role(v) == SystemRole::Input => found = found.or(Some(v)),
+            ExprNode::Pre(v) if draft.role(v) == SystemRole::Continuous => found = found.or(Some(v)),
             _ => {}
         }
         true

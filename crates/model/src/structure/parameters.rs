@@ -1,20 +1,20 @@
 //! Parameters: the order in which bindings are evaluated, their values, and what follows for expressions of them.
 
-use super::draft::{Draft, Role};
-use super::{ActionKind, blt, messages};
-use crate::flat::Equation;
-use crate::flat::{OriginKind, Type, Variability, Variable};
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use super::draft::{DaeDraft, SystemRole};
+use super::{EventActionKind, blt, messages};
+use crate::flat::FlatEquation;
+use crate::flat::{FlatVariable, OriginKind, ScalarType, Variability};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Sorts the parameters so that each binding refers to earlier ones only, after moving those that depend on free
 /// parameters to the free ones: their bindings become initial equations. The error is a circle of bindings that no
 /// condition opens.
-pub(super) fn order(draft: &mut Draft) -> Result<Vec<VarId>, Diagnostic> {
+pub(super) fn order(draft: &mut DaeDraft) -> Result<Vec<VarId>, Diagnostic> {
     loop {
         match sorted_parameters(draft) {
             Ok((uses, order)) => return Ok(without_free(draft, &uses, order)),
-            Err(Circle { before, members }) => {
+            Err(BindingCycle { before, members }) => {
                 if !decide_conditions(draft, &before, &members) {
                     return Err(messages::cyclic_parameters(draft, &members));
                 }
@@ -24,21 +24,21 @@ pub(super) fn order(draft: &mut Draft) -> Result<Vec<VarId>, Diagnostic> {
 }
 
 /// Parameters whose bindings use each other, and those that come before them.
-struct Circle {
+struct BindingCycle {
     before: Vec<VarId>,
     members: Vec<VarId>,
 }
 
 /// `T = if useT then T0 else f(h)` and `h = if useT then g(T) else h0` use each other on paper only: conditions that are known
 /// decide now, and what they read is fixed with the model. False where no binding has such a condition.
-fn decide_conditions(draft: &mut Draft, before: &[VarId], members: &[VarId]) -> bool {
+fn decide_conditions(draft: &mut DaeDraft, before: &[VarId], members: &[VarId]) -> bool {
     let values = values(draft, before);
     let mut decided = false;
     for &v in members {
         let Some(binding) = draft.variables[v.index()].binding else { continue };
         let mut chosen = Vec::new();
         for e in draft.exprs.reachable(&[binding], |_| true) {
-            let Node::If(condition, yes, no) = draft.exprs.node(e) else { continue };
+            let ExprNode::If(condition, yes, no) = draft.exprs.node(e) else { continue };
             let found = draft.exprs.dependencies(&[condition]);
             if found.time || !found.ders.is_empty() || !found.pres.is_empty() {
                 continue;
@@ -47,7 +47,7 @@ fn decide_conditions(draft: &mut Draft, before: &[VarId], members: &[VarId]) -> 
                 continue;
             }
             let holds = draft.exprs.eval(condition, &mut |node| match node {
-                Node::Var(u) => values[u.index()],
+                ExprNode::Var(u) => values[u.index()],
                 _ => f64::NAN,
             });
             if holds.is_finite() {
@@ -64,13 +64,13 @@ fn decide_conditions(draft: &mut Draft, before: &[VarId], members: &[VarId]) -> 
     decided
 }
 
-fn sorted_parameters(draft: &Draft) -> Result<(Uses, Vec<VarId>), Circle> {
-    let bound = draft.with_role(Role::Parameter);
+fn sorted_parameters(draft: &DaeDraft) -> Result<(BindingUses, Vec<VarId>), BindingCycle> {
+    let bound = draft.with_role(SystemRole::Parameter);
     let mut position = vec![u32::MAX; draft.variables.len()];
     for (i, v) in bound.iter().enumerate() {
         position[v.index()] = i as u32;
     }
-    let uses = Uses::of(draft);
+    let uses = BindingUses::of(draft);
     let sorted = blt::components(bound.len(), |node, out| {
         let used = uses.of_variable(bound[node as usize]).iter();
         out.extend(used.map(|u| position[u.index()]).filter(|&p| p != u32::MAX));
@@ -79,7 +79,7 @@ fn sorted_parameters(draft: &Draft) -> Result<(Uses, Vec<VarId>), Circle> {
     for members in sorted.iter() {
         let first = bound[members[0] as usize];
         if members.len() > 1 || uses.of_variable(first).contains(&first) {
-            return Err(Circle { before, members: members.iter().map(|&m| bound[m as usize]).collect() });
+            return Err(BindingCycle { before, members: members.iter().map(|&m| bound[m as usize]).collect() });
         }
         before.push(first);
     }
@@ -87,38 +87,38 @@ fn sorted_parameters(draft: &Draft) -> Result<(Uses, Vec<VarId>), Circle> {
 }
 
 /// Moves dependents of free parameters to the free ones.
-fn without_free(draft: &mut Draft, uses: &Uses, order: Vec<VarId>) -> Vec<VarId> {
+fn without_free(draft: &mut DaeDraft, uses: &BindingUses, order: Vec<VarId>) -> Vec<VarId> {
     let mut kept = Vec::with_capacity(order.len());
     for v in order {
-        if !uses.of_variable(v).iter().any(|u| draft.role(*u) == Role::FreeParameter) {
+        if !uses.of_variable(v).iter().any(|u| draft.role(*u) == SystemRole::FreeParameter) {
             kept.push(v);
             continue;
         }
-        draft.roles[v.index()] = Role::FreeParameter;
+        draft.roles[v.index()] = SystemRole::FreeParameter;
         if let Some(binding) = draft.variables[v.index()].binding.take() {
             let lhs = draft.exprs.var(v);
-            let origin = crate::flat::Origin { kind: OriginKind::Binding, ..draft.variables[v.index()].origin };
-            draft.initial_equations.push(Equation { lhs, rhs: binding, origin });
+            let origin = crate::flat::ElementOrigin { kind: OriginKind::Binding, ..draft.variables[v.index()].origin };
+            draft.initial_equations.push(FlatEquation { lhs, rhs: binding, origin });
         }
     }
     kept
 }
 
 /// The variables that each binding uses.
-struct Uses {
+struct BindingUses {
     starts: Vec<u32>,
     used: Vec<VarId>,
 }
 
-impl Uses {
-    fn of(draft: &Draft) -> Self {
-        let mut found = Uses { starts: Vec::with_capacity(draft.variables.len() + 1), used: Vec::new() };
-        let mut walk = bramah_expr::visit::Walk::default();
+impl BindingUses {
+    fn of(draft: &DaeDraft) -> Self {
+        let mut found = BindingUses { starts: Vec::with_capacity(draft.variables.len() + 1), used: Vec::new() };
+        let mut walk = bramah_expr::visit::NodeTraversal::default();
         for (v, role) in draft.variables.iter().zip(&draft.roles) {
             found.starts.push(found.used.len() as u32);
-            if let (Some(binding), Role::Parameter) = (v.binding, role) {
+            if let (Some(binding), SystemRole::Parameter) = (v.binding, role) {
                 walk.each(&draft.exprs, &[binding], |_, node| {
-                    if let Node::Var(u) = node {
+                    if let ExprNode::Var(u) = node {
                         found.used.push(u);
                     }
                     true
@@ -135,7 +135,7 @@ impl Uses {
 }
 
 /// Fixes parameters with the structure, and all that they are computed from.
-pub(super) fn fix(draft: &mut Draft, parameters: &[VarId]) {
+pub(super) fn fix(draft: &mut DaeDraft, parameters: &[VarId]) {
     let mut open = parameters.to_vec();
     while let Some(v) = open.pop() {
         let variable = &mut draft.variables[v.index()];
@@ -148,15 +148,15 @@ pub(super) fn fix(draft: &mut Draft, parameters: &[VarId]) {
 }
 
 /// The values of all parameters as they stand in the model; 0 where there is none (flatten has reported that).
-pub(super) fn values(draft: &Draft, order: &[VarId]) -> Vec<f64> {
+pub(super) fn values(draft: &DaeDraft, order: &[VarId]) -> Vec<f64> {
     let mut values = vec![f64::NAN; draft.variables.len()];
-    let mut evaluation = bramah_expr::eval::Evaluation::default();
+    let mut evaluation = bramah_expr::eval::EvaluationCache::default();
     for &v in order {
         let variable = &draft.variables[v.index()];
         let given = variable.binding.or(variable.start);
         values[v.index()] = match given {
             Some(e) => evaluation.value(&draft.exprs, e, &mut |node| match node {
-                Node::Var(u) => values[u.index()],
+                ExprNode::Var(u) => values[u.index()],
                 _ => f64::NAN,
             }),
             None => default_start(variable.ty),
@@ -167,12 +167,12 @@ pub(super) fn values(draft: &Draft, order: &[VarId]) -> Vec<f64> {
 
 /// Parameters whose value is no number (E217) or lies outside their range (E215); a value that is only passed on is reported
 /// where it comes from.
-pub(super) fn check(draft: &Draft, order: &[VarId], values: &[f64]) -> Vec<Diagnostic> {
+pub(super) fn check(draft: &DaeDraft, order: &[VarId], values: &[f64]) -> Vec<Diagnostic> {
     let mut wrong = vec![false; draft.variables.len()];
     let mut reported = Vec::new();
     for &v in order {
         let source = draft.variables[v.index()].binding.map(|b| draft.exprs.node(b));
-        if let Some(Node::Var(u)) = source
+        if let Some(ExprNode::Var(u)) = source
             && wrong[u.index()]
         {
             wrong[v.index()] = true;
@@ -185,7 +185,7 @@ pub(super) fn check(draft: &Draft, order: &[VarId], values: &[f64]) -> Vec<Diagn
 }
 
 /// A value below `min` or above `max`, without its place.
-pub fn out_of_range(variable: &Variable, value: f64, low: Option<f64>, high: Option<f64>) -> Option<Diagnostic> {
+pub fn out_of_range(variable: &FlatVariable, value: f64, low: Option<f64>, high: Option<f64>) -> Option<Diagnostic> {
     let bound = match (low, high) {
         (Some(low), _) if value < low => format!("less than its `min`, {low}"),
         (_, Some(high)) if value > high => format!("more than its `max`, {high}"),
@@ -195,7 +195,7 @@ pub fn out_of_range(variable: &Variable, value: f64, low: Option<f64>, high: Opt
     Some(Diagnostic::new(Code::OutOfRange, format!("`{}` is {value}{unit}, {bound}{unit}", variable.name)))
 }
 
-fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
+fn check_one(draft: &DaeDraft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     let variable = &draft.variables[v.index()];
     let value = values[v.index()];
     let known = |e: ExprId| {
@@ -205,7 +205,7 @@ fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
         let used = draft.exprs.dependencies(&[e]).vars;
         used.iter().all(|u| values[u.index()].is_finite()).then(|| {
             draft.exprs.eval(e, &mut |node| match node {
-                Node::Var(u) => values[u.index()],
+                ExprNode::Var(u) => values[u.index()],
                 _ => f64::NAN,
             })
         })
@@ -247,13 +247,13 @@ fn check_one(draft: &Draft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
 }
 
 /// The start value of a type when none is given.
-pub(super) fn default_start(ty: Type) -> f64 {
-    if matches!(ty, Type::Enumeration(_)) { 1.0 } else { 0.0 }
+pub(super) fn default_start(ty: ScalarType) -> f64 {
+    if matches!(ty, ScalarType::Enumeration(_)) { 1.0 } else { 0.0 }
 }
 
 /// What is known about the value of an expression.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sign {
+enum ValueSign {
     Unknown,
     Positive,
     Negative,
@@ -264,19 +264,19 @@ enum Sign {
 
 /// Signs and parameter values of all nodes of a growing pool.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Known {
+pub(super) struct SignAnalysis {
     variables: Vec<f64>,
     /// Signs of variables that have no known value.
-    signs_of: Vec<Sign>,
+    signs_of: Vec<ValueSign>,
     values: Vec<f64>,
-    signs: Vec<Sign>,
+    signs: Vec<ValueSign>,
 }
 
-impl Known {
+impl SignAnalysis {
     /// From the parameters' values; NaN for all other variables.
-    pub fn new(draft: &Draft, variables: Vec<f64>) -> Self {
+    pub fn new(draft: &DaeDraft, variables: Vec<f64>) -> Self {
         let signs_of = variable_signs(draft, &variables);
-        Known { variables, signs_of, ..Known::default() }
+        SignAnalysis { variables, signs_of, ..SignAnalysis::default() }
     }
 
     /// The value of an expression of parameters.
@@ -293,7 +293,7 @@ impl Known {
     /// True when an expression cannot vanish, whatever variables and time are, with the parameters as they are.
     pub fn is_nonzero(&mut self, pool: &Exprs, e: ExprId) -> bool {
         self.extend(pool);
-        matches!(self.signs[e.index()], Sign::Positive | Sign::Negative | Sign::NotZero)
+        matches!(self.signs[e.index()], ValueSign::Positive | ValueSign::Negative | ValueSign::NotZero)
     }
 
     fn extend(&mut self, pool: &Exprs) {
@@ -312,13 +312,13 @@ impl Known {
         let known =
             !operands.as_slice().is_empty() && operands.as_slice().iter().all(|a| !self.values[a.index()].is_nan());
         match node {
-            Node::Num(bits) => f64::from_bits(bits),
-            Node::Var(v) => self.variables.get(v.index()).copied().unwrap_or(f64::NAN),
-            Node::If(c, a, b) if !self.values[c.index()].is_nan() => {
+            ExprNode::Num(bits) => f64::from_bits(bits),
+            ExprNode::Var(v) => self.variables.get(v.index()).copied().unwrap_or(f64::NAN),
+            ExprNode::If(c, a, b) if !self.values[c.index()].is_nan() => {
                 self.values[if self.values[c.index()] == 0.0 { b } else { a }.index()]
             }
-            Node::Sample(..) => f64::NAN,
-            Node::Delay(a, _) => self.values[a.index()],
+            ExprNode::Sample(..) => f64::NAN,
+            ExprNode::Delay(a, _) => self.values[a.index()],
             _ if known => self.combined(pool, e),
             _ => f64::NAN,
         }
@@ -326,77 +326,81 @@ impl Known {
 
     /// The value of a node of which all arguments are known.
     fn combined(&self, pool: &Exprs, e: ExprId) -> f64 {
-        let leaf = |node: Node| match node {
-            Node::Var(v) => self.variables.get(v.index()).copied().unwrap_or(f64::NAN),
+        let leaf = |node: ExprNode| match node {
+            ExprNode::Var(v) => self.variables.get(v.index()).copied().unwrap_or(f64::NAN),
             _ => f64::NAN,
         };
         match pool.node(e) {
-            Node::Unary(op, a) => bramah_expr::math::unary(op, self.values[a.index()]),
-            Node::Binary(op, a, b) => bramah_expr::math::binary(op, self.values[a.index()], self.values[b.index()]),
+            ExprNode::Unary(op, a) => bramah_expr::math::unary(op, self.values[a.index()]),
+            ExprNode::Binary(op, a, b) => bramah_expr::math::binary(op, self.values[a.index()], self.values[b.index()]),
             _ => pool.eval(e, &mut { leaf }),
         }
     }
 
-    fn node_sign(&self, pool: &Exprs, e: ExprId) -> Sign {
-        use bramah_expr::{Binary, Unary};
+    fn node_sign(&self, pool: &Exprs, e: ExprId) -> ValueSign {
+        use bramah_expr::{BinaryFunction, UnaryFunction};
         let of = |a: ExprId| self.signs[a.index()];
         match pool.node(e) {
-            Node::Unary(op, a) => match op {
-                Unary::Neg => opposite(of(a)),
-                Unary::Exp | Unary::Cosh => Sign::Positive,
-                Unary::Abs if nonzero(of(a)) => Sign::Positive,
-                Unary::Sqrt if of(a) == Sign::Positive => Sign::Positive,
-                Unary::Log => self.logarithm(pool, a),
-                Unary::Abs | Unary::Sqrt | Unary::Not => Sign::NotNegative,
-                Unary::Sinh | Unary::Tanh | Unary::Atan | Unary::Sign => of(a),
-                _ => Sign::Unknown,
+            ExprNode::Unary(op, a) => match op {
+                UnaryFunction::Neg => opposite(of(a)),
+                UnaryFunction::Exp | UnaryFunction::Cosh => ValueSign::Positive,
+                UnaryFunction::Abs if nonzero(of(a)) => ValueSign::Positive,
+                UnaryFunction::Sqrt if of(a) == ValueSign::Positive => ValueSign::Positive,
+                UnaryFunction::Log => self.logarithm(pool, a),
+                UnaryFunction::Abs | UnaryFunction::Sqrt | UnaryFunction::Not => ValueSign::NotNegative,
+                UnaryFunction::Sinh | UnaryFunction::Tanh | UnaryFunction::Atan | UnaryFunction::Sign => of(a),
+                _ => ValueSign::Unknown,
             },
-            Node::Binary(op, a, b) => match op {
-                Binary::Add => sum(of(a), of(b)),
-                Binary::Sub => sum(of(a), opposite(of(b))),
-                Binary::Mul if a == b => {
+            ExprNode::Binary(op, a, b) => match op {
+                BinaryFunction::Add => sum(of(a), of(b)),
+                BinaryFunction::Sub => sum(of(a), opposite(of(b))),
+                BinaryFunction::Mul if a == b => {
                     if nonzero(of(a)) {
-                        Sign::Positive
+                        ValueSign::Positive
                     } else {
-                        Sign::NotNegative
+                        ValueSign::NotNegative
                     }
                 }
                 // A quotient of something that is not 0 is not 0 either, unless it overflows.
                 // what is divided by Modelica.Constants.inf is nothing
-                Binary::Div if self.values[b.index()].abs() >= INFINITE => Sign::NotNegative,
-                Binary::Mul | Binary::Div => product(of(a), of(b)),
-                Binary::Pow => self.power(of(a), b),
-                Binary::Max if of(a) == Sign::Positive || of(b) == Sign::Positive => Sign::Positive,
-                Binary::Max if not_negative(of(a)) || not_negative(of(b)) => Sign::NotNegative,
-                Binary::Min if of(a) == Sign::Negative || of(b) == Sign::Negative => Sign::Negative,
-                Binary::Min | Binary::Max => either(of(a), of(b)),
-                _ => Sign::Unknown,
+                BinaryFunction::Div if self.values[b.index()].abs() >= INFINITE => ValueSign::NotNegative,
+                BinaryFunction::Mul | BinaryFunction::Div => product(of(a), of(b)),
+                BinaryFunction::Pow => self.power(of(a), b),
+                BinaryFunction::Max if of(a) == ValueSign::Positive || of(b) == ValueSign::Positive => {
+                    ValueSign::Positive
+                }
+                BinaryFunction::Max if not_negative(of(a)) || not_negative(of(b)) => ValueSign::NotNegative,
+                BinaryFunction::Min if of(a) == ValueSign::Negative || of(b) == ValueSign::Negative => {
+                    ValueSign::Negative
+                }
+                BinaryFunction::Min | BinaryFunction::Max => either(of(a), of(b)),
+                _ => ValueSign::Unknown,
             },
-            Node::If(_, a, b) | Node::Homotopy(a, b) => either(of(a), of(b)),
-            Node::Rel(..) => Sign::NotNegative,
-            Node::Var(v) => self.signs_of.get(v.index()).copied().unwrap_or(Sign::Unknown),
-            _ => Sign::Unknown,
+            ExprNode::If(_, a, b) | ExprNode::Homotopy(a, b) => either(of(a), of(b)),
+            ExprNode::Rel(..) => ValueSign::NotNegative,
+            ExprNode::Var(v) => self.signs_of.get(v.index()).copied().unwrap_or(ValueSign::Unknown),
+            _ => ValueSign::Unknown,
         }
     }
 
     /// log(1 + something that is not negative), as in a softplus.
-    fn logarithm(&self, pool: &Exprs, e: ExprId) -> Sign {
-        let Node::Binary(bramah_expr::Binary::Add, a, b) = pool.node(e) else { return Sign::Unknown };
+    fn logarithm(&self, pool: &Exprs, e: ExprId) -> ValueSign {
+        let ExprNode::Binary(bramah_expr::BinaryFunction::Add, a, b) = pool.node(e) else { return ValueSign::Unknown };
         let beyond = |one: ExprId, rest: ExprId| match self.signs[rest.index()] {
-            sign @ (Sign::Positive | Sign::NotNegative) if self.values[one.index()] >= 1.0 => sign,
-            _ => Sign::Unknown,
+            sign @ (ValueSign::Positive | ValueSign::NotNegative) if self.values[one.index()] >= 1.0 => sign,
+            _ => ValueSign::Unknown,
         };
-        if beyond(a, b) == Sign::Unknown { beyond(b, a) } else { beyond(a, b) }
+        if beyond(a, b) == ValueSign::Unknown { beyond(b, a) } else { beyond(a, b) }
     }
 
-    fn power(&self, base: Sign, exponent: ExprId) -> Sign {
+    fn power(&self, base: ValueSign, exponent: ExprId) -> ValueSign {
         let even = self.values[exponent.index()] % 2.0 == 0.0;
         match base {
-            Sign::Positive => Sign::Positive,
-            _ if even && nonzero(base) => Sign::Positive,
-            _ if even => Sign::NotNegative,
-            Sign::NotNegative => Sign::NotNegative,
-            _ => Sign::Unknown,
+            ValueSign::Positive => ValueSign::Positive,
+            _ if even && nonzero(base) => ValueSign::Positive,
+            _ if even => ValueSign::NotNegative,
+            ValueSign::NotNegative => ValueSign::NotNegative,
+            _ => ValueSign::Unknown,
         }
     }
 }
@@ -408,14 +412,14 @@ const INFINITE: f64 = 1e60;
 const DEPTH: usize = 4;
 
 /// Signs of variables: of those that stand still, and of those that an equation sets equal to something of known sign.
-fn variable_signs(draft: &Draft, values: &[f64]) -> Vec<Sign> {
-    let mut known = Known { variables: values.to_vec(), ..Known::default() };
-    let mut signs = vec![Sign::Unknown; draft.variables.len()];
+fn variable_signs(draft: &DaeDraft, values: &[f64]) -> Vec<ValueSign> {
+    let mut known = SignAnalysis { variables: values.to_vec(), ..SignAnalysis::default() };
+    let mut signs = vec![ValueSign::Unknown; draft.variables.len()];
     let mut definitions = Vec::new();
     for equation in &draft.equations {
         match draft.exprs.node(equation.lhs) {
-            Node::Var(v) => definitions.push((v, equation.rhs)),
-            Node::Der(v) if equation.rhs == Exprs::ZERO => {
+            ExprNode::Var(v) => definitions.push((v, equation.rhs)),
+            ExprNode::Der(v) if equation.rhs == Exprs::ZERO => {
                 if let Some(value) = steady_value(draft, v, &mut known) {
                     signs[v.index()] = sign_of(value);
                 }
@@ -424,10 +428,10 @@ fn variable_signs(draft: &Draft, values: &[f64]) -> Vec<Sign> {
         }
     }
     for _ in 0..DEPTH {
-        known = Known { variables: known.variables, signs_of: signs.clone(), ..Known::default() };
+        known = SignAnalysis { variables: known.variables, signs_of: signs.clone(), ..SignAnalysis::default() };
         known.extend(&draft.exprs);
         for &(v, value) in &definitions {
-            if signs[v.index()] == Sign::Unknown {
+            if signs[v.index()] == ValueSign::Unknown {
                 signs[v.index()] = known.signs[value.index()];
             }
         }
@@ -440,79 +444,79 @@ fn variable_signs(draft: &Draft, values: &[f64]) -> Vec<Sign> {
 
 /// The value of a variable with derivative 0 that starts from a fixed value, is never reinitialized, and is not 0: that
 /// may be another one in the next run, but hardly of another sign.
-fn steady_value(draft: &Draft, v: VarId, known: &mut Known) -> Option<f64> {
+fn steady_value(draft: &DaeDraft, v: VarId, known: &mut SignAnalysis) -> Option<f64> {
     let variable = &draft.variables[v.index()];
-    let reinitialized = || draft.actions.iter().any(|a| matches!(a.kind, ActionKind::Reinit(w, _) if w == v));
+    let reinitialized = || draft.actions.iter().any(|a| matches!(a.kind, EventActionKind::Reinit(w, _) if w == v));
     let start = variable.start.filter(|_| variable.fixed && !reinitialized())?;
     known.value(&draft.exprs, start).filter(|value| *value != 0.0)
 }
 
-fn sign_of(value: f64) -> Sign {
+fn sign_of(value: f64) -> ValueSign {
     if value > 0.0 {
-        Sign::Positive
+        ValueSign::Positive
     } else if value < 0.0 {
-        Sign::Negative
+        ValueSign::Negative
     } else {
-        Sign::NotNegative
+        ValueSign::NotNegative
     }
 }
 
-fn nonzero(s: Sign) -> bool {
-    matches!(s, Sign::Positive | Sign::Negative | Sign::NotZero)
+fn nonzero(s: ValueSign) -> bool {
+    matches!(s, ValueSign::Positive | ValueSign::Negative | ValueSign::NotZero)
 }
 
-fn not_negative(s: Sign) -> bool {
-    matches!(s, Sign::Positive | Sign::NotNegative)
+fn not_negative(s: ValueSign) -> bool {
+    matches!(s, ValueSign::Positive | ValueSign::NotNegative)
 }
 
-fn not_positive(s: Sign) -> bool {
-    matches!(s, Sign::Negative | Sign::NotPositive)
+fn not_positive(s: ValueSign) -> bool {
+    matches!(s, ValueSign::Negative | ValueSign::NotPositive)
 }
 
-fn opposite(s: Sign) -> Sign {
+fn opposite(s: ValueSign) -> ValueSign {
     match s {
-        Sign::Positive => Sign::Negative,
-        Sign::Negative => Sign::Positive,
-        Sign::NotNegative => Sign::NotPositive,
-        Sign::NotPositive => Sign::NotNegative,
+        ValueSign::Positive => ValueSign::Negative,
+        ValueSign::Negative => ValueSign::Positive,
+        ValueSign::NotNegative => ValueSign::NotPositive,
+        ValueSign::NotPositive => ValueSign::NotNegative,
         other => other,
     }
 }
 
-fn sum(a: Sign, b: Sign) -> Sign {
+fn sum(a: ValueSign, b: ValueSign) -> ValueSign {
     let strict = nonzero(a) || nonzero(b);
     if not_negative(a) && not_negative(b) {
-        if strict { Sign::Positive } else { Sign::NotNegative }
+        if strict { ValueSign::Positive } else { ValueSign::NotNegative }
     } else if not_positive(a) && not_positive(b) {
-        if strict { Sign::Negative } else { Sign::NotPositive }
+        if strict { ValueSign::Negative } else { ValueSign::NotPositive }
     } else {
-        Sign::Unknown
+        ValueSign::Unknown
     }
 }
 
-fn product(a: Sign, b: Sign) -> Sign {
+fn product(a: ValueSign, b: ValueSign) -> ValueSign {
     let same = not_negative(a) && not_negative(b) || not_positive(a) && not_positive(b);
     let other = not_negative(a) && not_positive(b) || not_positive(a) && not_negative(b);
     match (nonzero(a) && nonzero(b), same, other) {
-        (true, true, _) => Sign::Positive,
-        (true, _, true) => Sign::Negative,
-        (true, ..) => Sign::NotZero,
-        (false, true, _) => Sign::NotNegative,
-        (false, _, true) => Sign::NotPositive,
-        _ => Sign::Unknown,
+        (true, true, _) => ValueSign::Positive,
+        (true, _, true) => ValueSign::Negative,
+        (true, ..) => ValueSign::NotZero,
+        (false, true, _) => ValueSign::NotNegative,
+        (false, _, true) => ValueSign::NotPositive,
+        _ => ValueSign::Unknown,
     }
 }
 
-fn either(a: Sign, b: Sign) -> Sign {
+fn either(a: ValueSign, b: ValueSign) -> ValueSign {
     if a == b {
         a
     } else if nonzero(a) && nonzero(b) {
-        Sign::NotZero
+        ValueSign::NotZero
     } else if not_negative(a) && not_negative(b) {
-        Sign::NotNegative
+        ValueSign::NotNegative
     } else if not_positive(a) && not_positive(b) {
-        Sign::NotPositive
+        ValueSign::NotPositive
     } else {
-        Sign::Unknown
+        ValueSign::Unknown
     }
 }

@@ -1,18 +1,18 @@
 //! Places of messages: in the model that was given, where a library's own text would tell its user nothing.
 
-use super::draft::Draft;
-use crate::flat::{InstanceInfo, Variable};
+use super::draft::DaeDraft;
+use crate::flat::{FlatVariable, InstanceInfo};
 use bramah_expr::VarId;
 use bramah_syntax::diag::Span;
 
 /// Where a variable is declared; of a connector's, where the component with the connector is. If that stands in another
 /// file than the model, the innermost component around it that does not, or else the one at the model's top level.
-pub(super) fn own_place(draft: &Draft, v: VarId) -> Span {
+pub(super) fn own_place(draft: &DaeDraft, v: VarId) -> Span {
     place_of(&draft.variables, &draft.instances, v)
 }
 
-/// [`own_place`], from the lists of variables and instances.
-pub fn place_of(variables: &[Variable], instances: &[InstanceInfo], v: VarId) -> Span {
+/// `own_place`, from the lists of variables and instances.
+pub fn place_of(variables: &[FlatVariable], instances: &[InstanceInfo], v: VarId) -> Span {
     let origin = variables[v.index()].origin;
     let own_file = instances[0].span.file;
     let (mut place, mut at) = (origin.span, origin.instance);
@@ -32,6 +32,6 @@ pub fn place_of(variables: &[Variable], instances: &[InstanceInfo], v: VarId) ->
 }
 
 /// Whether an instance has a flow variable of its own.
-pub fn is_connector(variables: &[Variable], instance: u32) -> bool {
+pub fn is_connector(variables: &[FlatVariable], instance: u32) -> bool {
     variables.iter().any(|v| v.flow && v.origin.instance == instance)
 }

@@ -1,6 +1,6 @@
 //! The sorted systems as text, for `check --emit` and for tests.
 
-use super::{Assign, Block, Dae, Loop, Unknown};
+use super::{AlgebraicLoop, BltBlock, Dae, ExplicitAssignment, Unknown};
 use bramah_expr::{ExprId, VarId};
 use std::fmt::Write;
 
@@ -24,7 +24,7 @@ impl Dae {
     }
 
     /// One of the sorted systems, a line for each assignment; loops are indented.
-    pub fn blocks_text(&self, blocks: &[Block]) -> String {
+    pub fn blocks_text(&self, blocks: &[BltBlock]) -> String {
         let mut out = String::new();
         self.write_blocks(blocks, 0, &mut out);
         out
@@ -54,12 +54,12 @@ impl Dae {
         out
     }
 
-    fn write_blocks(&self, blocks: &[Block], depth: usize, out: &mut String) {
+    fn write_blocks(&self, blocks: &[BltBlock], depth: usize, out: &mut String) {
         for block in blocks {
             match block {
-                Block::Assign(assign) => self.write_assign(assign, depth, out),
-                Block::Loop(found) => self.write_loop(found, depth, out),
-                Block::Mixed(mixed) => {
+                BltBlock::Assign(assign) => self.write_assign(assign, depth, out),
+                BltBlock::Loop(found) => self.write_loop(found, depth, out),
+                BltBlock::Mixed(mixed) => {
                     line(out, depth, "mixed");
                     self.write_blocks(&mixed.continuous, depth + 1, out);
                     for assign in &mixed.discrete {
@@ -70,11 +70,11 @@ impl Dae {
         }
     }
 
-    fn write_assign(&self, assign: &Assign, depth: usize, out: &mut String) {
+    fn write_assign(&self, assign: &ExplicitAssignment, depth: usize, out: &mut String) {
         line(out, depth, &format!("{} := {}", self.unknown_name(assign.unknown), self.text(assign.value)));
     }
 
-    fn write_loop(&self, found: &Loop, depth: usize, out: &mut String) {
+    fn write_loop(&self, found: &AlgebraicLoop, depth: usize, out: &mut String) {
         let names: Vec<String> = found.tearing.iter().map(|&u| self.unknown_name(u)).collect();
         let kind = if found.linear { "linear" } else { "nonlinear" };
         line(out, depth, &format!("{kind} loop for {}", names.join(", ")));

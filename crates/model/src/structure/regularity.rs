@@ -4,45 +4,45 @@
 //! differentiation helps, and the over- and under-determined parts say why.
 
 use super::discrete::lone_unknowns;
-use super::draft::{Draft, Role, RowKind};
-use super::dulmage_mendelsohn::{Decomposition, decompose};
-use super::incidence::{Incidence, NONE, Scanner};
+use super::draft::{DaeDraft, EquationRole, SystemRole};
+use super::dulmage_mendelsohn::{CoarseDecomposition, decompose};
+use super::incidence::{IncidenceMatrix, IncidenceScanner, NONE};
 use super::matching::{Matching, maximum};
-use bramah_expr::{Node, VarId};
+use bramah_expr::{ExprNode, VarId};
 
 /// The whole system with one column for each chain of derivatives.
-pub(super) struct Overview {
+pub(super) struct SystemOverview {
     /// The lowest variable of each column's chain.
     pub columns: Vec<VarId>,
     /// By variable.
     of_var: Vec<u32>,
-    pub incidence: Incidence,
+    pub incidence: IncidenceMatrix,
     pub matching: Matching,
 }
 
 /// What is wrong with a system that is not regular.
-pub(super) struct Singularity {
-    pub overview: Overview,
-    pub parts: Decomposition,
+pub(super) struct StructuralSingularity {
+    pub overview: SystemOverview,
+    pub parts: CoarseDecomposition,
 }
 
 /// Checks the system of all continuous and discrete equations.
-pub(super) fn check(draft: &Draft) -> Result<(), Box<Singularity>> {
-    let overview = Overview::new(draft);
+pub(super) fn check(draft: &DaeDraft) -> Result<(), Box<StructuralSingularity>> {
+    let overview = SystemOverview::new(draft);
     let complete = |partners: &[u32]| partners.iter().all(|&p| p != NONE);
     if complete(&overview.matching.column_of) && complete(&overview.matching.row_of) {
         return Ok(());
     }
     let parts = decompose(&overview.incidence, &overview.matching);
-    Err(Box::new(Singularity { overview, parts }))
+    Err(Box::new(StructuralSingularity { overview, parts }))
 }
 
-impl Overview {
-    fn new(draft: &Draft) -> Self {
-        let mut made = Overview {
+impl SystemOverview {
+    fn new(draft: &DaeDraft) -> Self {
+        let mut made = SystemOverview {
             columns: Vec::new(),
             of_var: vec![NONE; draft.variables.len()],
-            incidence: Incidence::default(),
+            incidence: IncidenceMatrix::default(),
             matching: Matching::default(),
         };
         made.number_columns(draft);
@@ -51,7 +51,7 @@ impl Overview {
         made
     }
 
-    fn number_columns(&mut self, draft: &Draft) {
+    fn number_columns(&mut self, draft: &DaeDraft) {
         let mut integral = vec![NONE; draft.variables.len()];
         for (i, link) in draft.derivative.iter().enumerate() {
             if let Some(w) = link {
@@ -59,7 +59,7 @@ impl Overview {
             }
         }
         for i in 0..draft.variables.len() {
-            let unknown = matches!(draft.roles[i], Role::Continuous | Role::Discrete);
+            let unknown = matches!(draft.roles[i], SystemRole::Continuous | SystemRole::Discrete);
             if !unknown || integral[i] != NONE {
                 continue;
             }
@@ -73,17 +73,17 @@ impl Overview {
         }
     }
 
-    fn scan(&mut self, draft: &Draft) {
-        let mut scanner = Scanner::default();
+    fn scan(&mut self, draft: &DaeDraft) {
+        let mut scanner = IncidenceScanner::default();
         let of_var = &self.of_var;
-        let column = |node: Node| match node {
-            Node::Var(v) | Node::Der(v) => Some(of_var[v.index()]).filter(|&c| c != NONE),
+        let column = |node: ExprNode| match node {
+            ExprNode::Var(v) | ExprNode::Der(v) => Some(of_var[v.index()]).filter(|&c| c != NONE),
             _ => None,
         };
-        let continuous = |c: u32| draft.role(self.columns[c as usize]) == Role::Continuous;
+        let continuous = |c: u32| draft.role(self.columns[c as usize]) == SystemRole::Continuous;
         for (equation, &kind) in draft.equations.iter().zip(&draft.kinds) {
             let sides = [equation.lhs, equation.rhs];
-            if kind == RowKind::Continuous {
+            if kind == EquationRole::Continuous {
                 scanner.push(&draft.exprs, sides, column, continuous, &mut self.incidence);
                 continue;
             }

@@ -1,16 +1,16 @@
-//! One component of a sorted system as a [`Block`]: explicit where that is safe, else a torn loop.
+//! One component of a sorted system as a [`BltBlock`]: explicit where that is safe, else a torn loop.
 
-use super::draft::Draft;
-use super::parameters::Known;
+use super::draft::DaeDraft;
+use super::parameters::SignAnalysis;
 use super::tearing::{self, LoopGraph};
-use super::{Assign, Block, Loop, Unknown};
-use crate::flat::Equation;
-use bramah_expr::{Binary, ExprId, Exprs, Node, Unary};
+use super::{AlgebraicLoop, BltBlock, ExplicitAssignment, Unknown};
+use crate::flat::FlatEquation;
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction};
 use rustc_hash::FxHashMap;
 
 /// How an equation can be solved for an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Solved {
+enum EquationSolvability {
     /// By this value, always; `gentle` when the coefficient is plus or minus one, `switched` when it changes with a mode.
     Explicit { value: ExprId, gentle: bool, switched: bool },
     /// It is affine, but the coefficient may vanish.
@@ -21,15 +21,15 @@ enum Solved {
 
 /// Solves equations and remembers the outcome, since the systems share most equations.
 pub(super) struct BlockSolver<'a> {
-    pub draft: &'a mut Draft,
-    pub known: &'a mut Known,
-    found: FxHashMap<(ExprId, ExprId, Unknown), Solved>,
+    pub draft: &'a mut DaeDraft,
+    pub known: &'a mut SignAnalysis,
+    found: FxHashMap<(ExprId, ExprId, Unknown), EquationSolvability>,
 }
 
 /// An equation of a component with its number and its unknowns.
 #[derive(Clone, Debug)]
-pub(super) struct Member {
-    pub equation: Equation,
+pub(super) struct BlockEquation {
+    pub equation: FlatEquation,
     pub index: u32,
     /// Columns of the component that occur in it; the first `solvable` ones can be solved for in principle.
     pub columns: Vec<u32>,
@@ -37,27 +37,34 @@ pub(super) struct Member {
 }
 
 impl<'a> BlockSolver<'a> {
-    pub fn new(draft: &'a mut Draft, known: &'a mut Known) -> Self {
+    pub fn new(draft: &'a mut DaeDraft, known: &'a mut SignAnalysis) -> Self {
         BlockSolver { draft, known, found: FxHashMap::default() }
     }
 
     /// The block of one equation for one unknown.
-    pub fn single(&mut self, equation: &Equation, index: u32, unknown: Unknown) -> Block {
+    pub fn single(&mut self, equation: &FlatEquation, index: u32, unknown: Unknown) -> BltBlock {
         match self.solve(equation, unknown) {
-            Solved::Explicit { value, .. } => Block::Assign(Assign { unknown, value, equation: index }),
+            EquationSolvability::Explicit { value, .. } => {
+                BltBlock::Assign(ExplicitAssignment { unknown, value, equation: index })
+            }
             other => {
                 let residual = self.draft.exprs.sub(equation.lhs, equation.rhs);
                 let (inner, residuals) = (Vec::new(), vec![(residual, index)]);
-                Block::Loop(Loop { tearing: vec![unknown], inner, residuals, linear: other == Solved::Affine })
+                BltBlock::Loop(AlgebraicLoop {
+                    tearing: vec![unknown],
+                    inner,
+                    residuals,
+                    linear: other == EquationSolvability::Affine,
+                })
             }
         }
     }
 
     /// The other side of a discrete equation.
-    pub fn discrete(&mut self, equation: &Equation, index: u32, unknown: Unknown) -> Assign {
+    pub fn discrete(&mut self, equation: &FlatEquation, index: u32, unknown: Unknown) -> ExplicitAssignment {
         let leaf = self.leaf(unknown);
         let value = if equation.lhs == leaf { equation.rhs } else { equation.lhs };
-        Assign { unknown, value, equation: index }
+        ExplicitAssignment { unknown, value, equation: index }
     }
 
     /// The torn loop of several equations; `columns` are their unknowns, as many as members.
@@ -66,7 +73,7 @@ impl<'a> BlockSolver<'a> {
     /// iteration variables to its tolerance, and dividing by a small coefficient would multiply that error. For the same
     /// reason no loop is solved by a coefficient that switches, as those of ideal diodes do between 1 and 1e-5: pivoting
     /// has to follow the modes.
-    pub fn torn(&mut self, members: &[Member], columns: &[u32], unknowns: &[Unknown]) -> Block {
+    pub fn torn(&mut self, members: &[BlockEquation], columns: &[u32], unknowns: &[Unknown]) -> BltBlock {
         let local: FxHashMap<u32, u32> = columns.iter().enumerate().map(|(i, &c)| (c, i as u32)).collect();
         let unknown = |c: u32| unknowns[columns[c as usize] as usize];
         let linear = self.is_linear(members, columns, unknowns);
@@ -77,7 +84,7 @@ impl<'a> BlockSolver<'a> {
                 let c = local[c];
                 let safe = at < member.solvable
                     && match self.solve(&member.equation, unknown(c)) {
-                        Solved::Explicit { gentle, switched, .. } => linear && !switched || gentle,
+                        EquationSolvability::Explicit { gentle, switched, .. } => linear && !switched || gentle,
                         _ => false,
                     };
                 row.push((c, safe));
@@ -89,7 +96,9 @@ impl<'a> BlockSolver<'a> {
         let inner = torn.inner.iter().map(|&(row, c)| {
             let member = &members[row as usize];
             match self.solve(&member.equation, unknown(c)) {
-                Solved::Explicit { value, .. } => Assign { unknown: unknown(c), value, equation: member.index },
+                EquationSolvability::Explicit { value, .. } => {
+                    ExplicitAssignment { unknown: unknown(c), value, equation: member.index }
+                }
                 _ => unreachable!("tearing solves safe entries only"),
             }
         });
@@ -99,7 +108,12 @@ impl<'a> BlockSolver<'a> {
             (self.draft.exprs.sub(member.equation.lhs, member.equation.rhs), member.index)
         });
         let residuals = residuals.collect();
-        Block::Loop(Loop { tearing: torn.tearing.iter().map(|&c| unknown(c)).collect(), inner, residuals, linear })
+        BltBlock::Loop(AlgebraicLoop {
+            tearing: torn.tearing.iter().map(|&c| unknown(c)).collect(),
+            inner,
+            residuals,
+            linear,
+        })
     }
 
     /// Derivatives cost the integrator nothing as iteration variables; a given start helps Newton's method.
@@ -120,7 +134,7 @@ impl<'a> BlockSolver<'a> {
         }
     }
 
-    fn solve(&mut self, equation: &Equation, unknown: Unknown) -> Solved {
+    fn solve(&mut self, equation: &FlatEquation, unknown: Unknown) -> EquationSolvability {
         let key = (equation.lhs, equation.rhs, unknown);
         if let Some(&known) = self.found.get(&key) {
             return known;
@@ -128,27 +142,27 @@ impl<'a> BlockSolver<'a> {
         let leaf = self.leaf(unknown);
         let pool = &mut self.draft.exprs;
         let solved = match pool.solve_for(equation.lhs, equation.rhs, leaf) {
-            None => Solved::No,
+            None => EquationSolvability::No,
             Some((value, coefficient)) if self.known.is_nonzero(pool, coefficient) => {
                 let gentle = pool.as_num(coefficient).is_some_and(|c| c.abs() == 1.0);
                 let switched =
-                    pool.reachable(&[coefficient], |_| true).iter().any(|&e| matches!(pool.node(e), Node::If(..)));
-                Solved::Explicit { value, gentle, switched }
+                    pool.reachable(&[coefficient], |_| true).iter().any(|&e| matches!(pool.node(e), ExprNode::If(..)));
+                EquationSolvability::Explicit { value, gentle, switched }
             }
-            Some(_) => Solved::Affine,
+            Some(_) => EquationSolvability::Affine,
         };
         self.found.insert(key, solved);
         solved
     }
 
-    fn is_linear(&self, members: &[Member], columns: &[u32], unknowns: &[Unknown]) -> bool {
+    fn is_linear(&self, members: &[BlockEquation], columns: &[u32], unknowns: &[Unknown]) -> bool {
         let set: rustc_hash::FxHashSet<Unknown> = columns.iter().map(|&c| unknowns[c as usize]).collect();
         let pool = &self.draft.exprs;
         members.iter().all(|m| {
             let sides = [m.equation.lhs, m.equation.rhs];
             is_affine(pool, sides, |node| match node {
-                Node::Var(v) => set.contains(&Unknown::Var(v)),
-                Node::Der(v) => set.contains(&Unknown::Der(v)),
+                ExprNode::Var(v) => set.contains(&Unknown::Var(v)),
+                ExprNode::Der(v) => set.contains(&Unknown::Der(v)),
                 _ => false,
             })
         })
@@ -156,18 +170,18 @@ impl<'a> BlockSolver<'a> {
 }
 
 /// Whether both expressions are affine in all leaves for which `is_unknown` says true, together.
-fn is_affine(pool: &Exprs, sides: [ExprId; 2], is_unknown: impl Fn(Node) -> bool) -> bool {
+fn is_affine(pool: &Exprs, sides: [ExprId; 2], is_unknown: impl Fn(ExprNode) -> bool) -> bool {
     let mut holds: rustc_hash::FxHashSet<ExprId> = rustc_hash::FxHashSet::default();
     for e in pool.reachable(&sides, |_| true) {
         let node = pool.node(e);
         let depends = |a: ExprId| holds.contains(&a);
         let affected = pool.operands(e).as_slice().iter().any(|&a| depends(a));
         let fine = match node {
-            Node::Unary(op, _) => op == Unary::Neg,
-            Node::Binary(Binary::Add | Binary::Sub, ..) | Node::Homotopy(..) => true,
-            Node::Binary(Binary::Mul, a, b) => !(depends(a) && depends(b)),
-            Node::Binary(Binary::Div, _, b) => !depends(b),
-            Node::If(c, ..) => !depends(c),
+            ExprNode::Unary(op, _) => op == UnaryFunction::Neg,
+            ExprNode::Binary(BinaryFunction::Add | BinaryFunction::Sub, ..) | ExprNode::Homotopy(..) => true,
+            ExprNode::Binary(BinaryFunction::Mul, a, b) => !(depends(a) && depends(b)),
+            ExprNode::Binary(BinaryFunction::Div, _, b) => !depends(b),
+            ExprNode::If(c, ..) => !depends(c),
             _ => false,
         };
         if affected && !fine {

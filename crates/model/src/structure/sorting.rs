@@ -1,33 +1,33 @@
 //! From matched equations to blocks: components of the continuous part, then these with the discrete equations.
 
-use super::blt::{self, Components};
-use super::incidence::{Incidence, NONE};
+use super::blt::{self, StrongComponents};
+use super::incidence::{IncidenceMatrix, NONE};
 use super::matching::Matching;
-use super::solve_block::{BlockSolver, Member};
-use super::{Assign, Block, Mixed, Unknown};
-use crate::flat::Equation;
-use bramah_expr::Node;
+use super::solve_block::{BlockEquation, BlockSolver};
+use super::{BltBlock, ExplicitAssignment, MixedLoop, Unknown};
+use crate::flat::FlatEquation;
+use bramah_expr::ExprNode;
 
 /// Equations with their unknowns, to be matched and sorted.
 #[derive(Clone, Debug, Default)]
-pub(super) struct System {
+pub(super) struct EquationSystem {
     pub columns: Vec<Unknown>,
     pub rows: Vec<SystemRow>,
-    pub incidence: Incidence,
+    pub incidence: IncidenceMatrix,
     pub matching: Matching,
 }
 
 /// Where unknowns stand among the columns of a system.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Columns {
+pub(super) struct UnknownColumns {
     of_var: Vec<u32>,
     of_der: Vec<u32>,
 }
 
-impl Columns {
+impl UnknownColumns {
     /// The places of these unknowns, in a model of so many variables.
     pub fn new(unknowns: &[Unknown], variables: usize) -> Self {
-        let mut made = Columns { of_var: vec![NONE; variables], of_der: vec![NONE; variables] };
+        let mut made = UnknownColumns { of_var: vec![NONE; variables], of_der: vec![NONE; variables] };
         for (column, unknown) in (0..).zip(unknowns) {
             match unknown {
                 Unknown::Var(v) => made.of_var[v.index()] = column,
@@ -47,27 +47,27 @@ impl Columns {
     }
 
     /// The column of the unknown that a node is.
-    pub fn of_node(&self, node: Node) -> Option<u32> {
+    pub fn of_node(&self, node: ExprNode) -> Option<u32> {
         match node {
-            Node::Var(v) => self.of(Unknown::Var(v)),
-            Node::Der(v) => self.of(Unknown::Der(v)),
+            ExprNode::Var(v) => self.of(Unknown::Var(v)),
+            ExprNode::Der(v) => self.of(Unknown::Der(v)),
             _ => None,
         }
     }
 }
 
-/// An equation of a [`System`].
+/// An equation of a [`EquationSystem`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SystemRow {
-    pub equation: Equation,
+    pub equation: FlatEquation,
     /// Index into `Dae::equations`.
     pub index: u32,
     pub discrete: bool,
 }
 
-impl System {
+impl EquationSystem {
     /// The blocks of the continuous rows, discrete unknowns being known.
-    pub fn continuous_blocks(&self, solver: &mut BlockSolver) -> (Components, Vec<Block>) {
+    pub fn continuous_blocks(&self, solver: &mut BlockSolver) -> (StrongComponents, Vec<BltBlock>) {
         let found = blt::components(self.rows.len(), |row, out| {
             if !self.rows[row as usize].discrete {
                 let owners = self.incidence.all(row).iter().map(|&c| self.matching.row_of[c as usize]);
@@ -81,7 +81,7 @@ impl System {
     }
 
     /// `marks` tells the columns of the component `number` from others.
-    fn block(&self, solver: &mut BlockSolver, rows: &[u32], number: u32, marks: &mut [u32]) -> Block {
+    fn block(&self, solver: &mut BlockSolver, rows: &[u32], number: u32, marks: &mut [u32]) -> BltBlock {
         let column = |row: u32| self.matching.column_of[row as usize];
         if let [row] = rows {
             let SystemRow { equation, index, .. } = &self.rows[*row as usize];
@@ -92,21 +92,26 @@ impl System {
         for &c in &columns {
             marks[c as usize] = number;
         }
-        let members: Vec<Member> = rows.iter().map(|&row| self.member(row, number, marks)).collect();
+        let members: Vec<BlockEquation> = rows.iter().map(|&row| self.member(row, number, marks)).collect();
         solver.torn(&members, &columns, &self.columns)
     }
 
-    fn member(&self, row: u32, number: u32, marks: &[u32]) -> Member {
+    fn member(&self, row: u32, number: u32, marks: &[u32]) -> BlockEquation {
         let SystemRow { equation, index, .. } = self.rows[row as usize];
         let inside = |c: &&u32| marks[**c as usize] == number;
         let columns: Vec<u32> = self.incidence.all(row).iter().filter(inside).copied().collect();
         let solvable = self.incidence.solvable(row).iter().filter(inside).count();
-        Member { equation, index, columns, solvable }
+        BlockEquation { equation, index, columns, solvable }
     }
 
     /// The continuous blocks with the discrete equations in between; a loop through discrete equations becomes a
-    /// [`Mixed`].
-    pub fn with_discrete(&self, solver: &mut BlockSolver, components: &Components, blocks: &[Block]) -> Vec<Block> {
+    /// [`MixedLoop`].
+    pub fn with_discrete(
+        &self,
+        solver: &mut BlockSolver,
+        components: &StrongComponents,
+        blocks: &[BltBlock],
+    ) -> Vec<BltBlock> {
         let discrete: Vec<u32> = (0..self.rows.len() as u32).filter(|&r| self.rows[r as usize].discrete).collect();
         if discrete.is_empty() {
             return blocks.to_vec();
@@ -143,16 +148,16 @@ impl System {
         out
     }
 
-    fn mixed(&self, solver: &mut BlockSolver, continuous: Vec<Block>, rows: &[u32]) -> Block {
-        let assigns: Vec<Assign> =
+    fn mixed(&self, solver: &mut BlockSolver, continuous: Vec<BltBlock>, rows: &[u32]) -> BltBlock {
+        let assigns: Vec<ExplicitAssignment> =
             self.discrete_order(rows).into_iter().map(|row| self.discrete(solver, row)).collect();
         match assigns.as_slice() {
-            [one] if continuous.is_empty() && !depends_on_itself(solver, one) => Block::Assign(*one),
-            _ => Block::Mixed(Mixed { continuous, discrete: assigns }),
+            [one] if continuous.is_empty() && !depends_on_itself(solver, one) => BltBlock::Assign(*one),
+            _ => BltBlock::Mixed(MixedLoop { continuous, discrete: assigns }),
         }
     }
 
-    fn discrete(&self, solver: &mut BlockSolver, row: u32) -> Assign {
+    fn discrete(&self, solver: &mut BlockSolver, row: u32) -> ExplicitAssignment {
         let SystemRow { equation, index, .. } = &self.rows[row as usize];
         solver.discrete(equation, *index, self.columns[self.matching.column_of[row as usize] as usize])
     }
@@ -168,7 +173,7 @@ impl System {
     }
 }
 
-fn depends_on_itself(solver: &BlockSolver, assign: &Assign) -> bool {
+fn depends_on_itself(solver: &BlockSolver, assign: &ExplicitAssignment) -> bool {
     match assign.unknown {
         Unknown::Var(v) => solver.draft.exprs.variables(assign.value).contains(&v),
         Unknown::Der(_) => false,

@@ -1,12 +1,12 @@
 //! Derivatives that only initial equations ask for, as `der(y) = 0` of a `y` that is no state: unknowns of the start, each
 //! determined by the derivative of the equation that determines its variable. The running system does without them.
 
-use super::draft::{Draft, Role, RowKind};
-use super::incidence::{NONE, Scanner};
-use super::sorting::{Columns, System, SystemRow};
+use super::draft::{DaeDraft, EquationRole, SystemRole};
+use super::incidence::{IncidenceScanner, NONE};
+use super::sorting::{EquationSystem, SystemRow, UnknownColumns};
 use super::{Unknown, messages};
-use crate::flat::{Equation, Origin, OriginKind, Type};
-use bramah_expr::differentiate::{Leaf, TimeDerivative};
+use crate::flat::{ElementOrigin, FlatEquation, OriginKind, ScalarType};
+use bramah_expr::differentiate::{DerivativeLeaf, TimeDerivative};
 use bramah_expr::{ExprId, Exprs, VarId};
 use bramah_syntax::diag::Diagnostic;
 use rustc_hash::FxHashMap;
@@ -15,12 +15,16 @@ use rustc_hash::FxHashMap;
 ///
 /// # Errors
 /// What cannot be differentiated (E304).
-pub(super) fn add(draft: &mut Draft, running: &System, states: &[VarId]) -> Result<Option<System>, Diagnostic> {
+pub(super) fn add(
+    draft: &mut DaeDraft,
+    running: &EquationSystem,
+    states: &[VarId],
+) -> Result<Option<EquationSystem>, Diagnostic> {
     let asked = asked_for(draft, states);
     if asked.is_empty() {
         return Ok(None);
     }
-    let mut derivatives = Derivatives::new(running, draft.variables.len());
+    let mut derivatives = StartDerivatives::new(running, draft.variables.len());
     for &v in &asked {
         derivatives.of(draft, Unknown::Var(v));
     }
@@ -41,15 +45,15 @@ pub(super) fn add(draft: &mut Draft, running: &System, states: &[VarId]) -> Resu
 }
 
 /// Unknowns that are no states and whose derivatives stand in initial equations.
-fn asked_for(draft: &Draft, states: &[VarId]) -> Vec<VarId> {
+fn asked_for(draft: &DaeDraft, states: &[VarId]) -> Vec<VarId> {
     let sides = draft.initial_equations.iter().flat_map(|e| [e.lhs, e.rhs]).collect::<Vec<_>>();
     let asked = draft.exprs.dependencies(&sides).ders;
-    asked.into_iter().filter(|v| draft.role(*v) == Role::Continuous && states.binary_search(v).is_err()).collect()
+    asked.into_iter().filter(|v| draft.role(*v) == SystemRole::Continuous && states.binary_search(v).is_err()).collect()
 }
 
-struct Derivatives<'a> {
-    running: &'a System,
-    columns: Columns,
+struct StartDerivatives<'a> {
+    running: &'a EquationSystem,
+    columns: UnknownColumns,
     /// The derivatives of unknowns, as variables.
     made: FxHashMap<Unknown, VarId>,
     /// Unknowns whose derivatives are not determined yet.
@@ -59,11 +63,11 @@ struct Derivatives<'a> {
     rows: Vec<(SystemRow, VarId)>,
 }
 
-impl<'a> Derivatives<'a> {
-    fn new(running: &'a System, variables: usize) -> Self {
-        Derivatives {
+impl<'a> StartDerivatives<'a> {
+    fn new(running: &'a EquationSystem, variables: usize) -> Self {
+        StartDerivatives {
             running,
-            columns: Columns::new(&running.columns, variables),
+            columns: UnknownColumns::new(&running.columns, variables),
             made: FxHashMap::default(),
             open: Vec::new(),
             time_derivative: TimeDerivative::default(),
@@ -72,7 +76,7 @@ impl<'a> Derivatives<'a> {
     }
 
     /// The derivative of an unknown of the running system.
-    fn of(&mut self, draft: &mut Draft, unknown: Unknown) {
+    fn of(&mut self, draft: &mut DaeDraft, unknown: Unknown) {
         if self.columns.of(unknown).is_none() || self.made.contains_key(&unknown) {
             return;
         }
@@ -80,20 +84,20 @@ impl<'a> Derivatives<'a> {
             Unknown::Var(v) => (v, format!("der({})", draft.variables[v.index()].name)),
             Unknown::Der(v) => (v, format!("der(der({}))", draft.variables[v.index()].name)),
         };
-        let origin = Origin { kind: OriginKind::Differentiated, ..draft.variables[v.index()].origin };
-        let made = draft.make_variable(name, Type::Real, Role::Continuous, origin);
+        let origin = ElementOrigin { kind: OriginKind::Differentiated, ..draft.variables[v.index()].origin };
+        let made = draft.make_variable(name, ScalarType::Real, SystemRole::Continuous, origin);
         self.made.insert(unknown, made);
         self.open.push(unknown);
     }
 
     /// Differentiates the equation that determines an unknown.
-    fn determine(&mut self, draft: &mut Draft, unknown: Unknown) -> Result<(), Diagnostic> {
+    fn determine(&mut self, draft: &mut DaeDraft, unknown: Unknown) -> Result<(), Diagnostic> {
         let column = self.columns.of(unknown).expect("only unknowns of the running system are asked for");
         let row = self.running.matching.row_of[column as usize];
         let equation = self.running.rows[row as usize].equation;
         let used = draft.exprs.dependencies(&[equation.lhs, equation.rhs]);
         for v in used.vars {
-            if draft.role(v) == Role::Input {
+            if draft.role(v) == SystemRole::Input {
                 return Err(messages::not_differentiable(draft, &equation, v));
             }
             self.of(draft, Unknown::Var(v));
@@ -102,42 +106,42 @@ impl<'a> Derivatives<'a> {
             self.of(draft, Unknown::Der(v));
         }
         let (lhs, rhs) = (self.differentiated(draft, equation.lhs), self.differentiated(draft, equation.rhs));
-        let origin = Origin { kind: OriginKind::Differentiated, ..equation.origin };
-        let equation = Equation { lhs, rhs, origin };
-        draft.add_equation(equation, RowKind::Continuous);
+        let origin = ElementOrigin { kind: OriginKind::Differentiated, ..equation.origin };
+        let equation = FlatEquation { lhs, rhs, origin };
+        draft.add_equation(equation, EquationRole::Continuous);
         let index = draft.equations.len() as u32 - 1;
         self.rows.push((SystemRow { equation, index, discrete: false }, self.made[&unknown]));
         Ok(())
     }
 
-    fn differentiated(&mut self, draft: &mut Draft, e: ExprId) -> ExprId {
+    fn differentiated(&mut self, draft: &mut DaeDraft, e: ExprId) -> ExprId {
         let (made, columns, links) = (&self.made, &self.columns, &draft.derivative);
-        let mut leaf = |pool: &mut Exprs, leaf: Leaf| {
+        let mut leaf = |pool: &mut Exprs, leaf: DerivativeLeaf| {
             let unknown = match leaf {
-                Leaf::Var(v) => Unknown::Var(v),
-                Leaf::Der(v) => Unknown::Der(v),
+                DerivativeLeaf::Var(v) => Unknown::Var(v),
+                DerivativeLeaf::Der(v) => Unknown::Der(v),
             };
             Some(match (made.get(&unknown), leaf) {
                 (Some(d), _) => pool.var(*d),
-                (None, Leaf::Var(v)) if columns.of(Unknown::Der(v)).is_some() => pool.der(v),
-                (None, Leaf::Var(v)) => links[v.index()].map_or(Exprs::ZERO, |w| w.expression(pool)),
-                (None, Leaf::Der(_)) => Exprs::ZERO,
+                (None, DerivativeLeaf::Var(v)) if columns.of(Unknown::Der(v)).is_some() => pool.der(v),
+                (None, DerivativeLeaf::Var(v)) => links[v.index()].map_or(Exprs::ZERO, |w| w.expression(pool)),
+                (None, DerivativeLeaf::Der(_)) => Exprs::ZERO,
             })
         };
         self.time_derivative.derive(&mut draft.exprs, e, &mut leaf).expect("every leaf has an answer")
     }
 
     /// The running system with the rows made.
-    fn extended(self, draft: &Draft) -> System {
+    fn extended(self, draft: &DaeDraft) -> EquationSystem {
         let mut system = self.running.clone();
         system.columns.extend(self.rows.iter().map(|(_, v)| Unknown::Var(*v)));
         system.matching.row_of.resize(system.columns.len(), NONE);
-        let columns = Columns::new(&system.columns, draft.variables.len());
+        let columns = UnknownColumns::new(&system.columns, draft.variables.len());
         let discrete = |c: u32| match system.columns[c as usize] {
-            Unknown::Var(v) => draft.role(v) == Role::Discrete,
+            Unknown::Var(v) => draft.role(v) == SystemRole::Discrete,
             Unknown::Der(_) => false,
         };
-        let mut scanner = Scanner::default();
+        let mut scanner = IncidenceScanner::default();
         for (row, _) in &self.rows {
             let sides = [row.equation.lhs, row.equation.rhs];
             scanner.push(&draft.exprs, sides, |node| columns.of_node(node), |c| !discrete(c), &mut system.incidence);

@@ -1,16 +1,16 @@
 //! How a start value is spoken of: the parameter that gives it, the modifier that frees it.
 
-use crate::flat::Variable;
-use bramah_expr::{Exprs, Node, VarId};
+use crate::flat::FlatVariable;
+use bramah_expr::{ExprNode, Exprs, VarId};
 
 /// The parameter that a user would change to change the start of `v`: the end of the chain of parameters that are each
 /// bound to the next. `None` where the start is a number or a formula.
-pub fn parameter_behind<'a>(exprs: &Exprs, variables: &'a [Variable], v: VarId) -> Option<&'a str> {
+pub fn parameter_behind<'a>(exprs: &Exprs, variables: &'a [FlatVariable], v: VarId) -> Option<&'a str> {
     let mut next = variables[v.index()].start;
     let mut found = None;
     // parameters in a circle have been refused long before, but this must end in any case
     for _ in 0..variables.len() {
-        let Some(Node::Var(p)) = next.map(|e| exprs.node(e)) else { break };
+        let Some(ExprNode::Var(p)) = next.map(|e| exprs.node(e)) else { break };
         found = Some(variables[p.index()].name.as_str());
         next = variables[p.index()].binding;
     }

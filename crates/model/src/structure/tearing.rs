@@ -22,7 +22,7 @@ pub(super) struct LoopGraph {
 
 /// What came out.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Torn {
+pub(super) struct TearingResult {
     /// Columns to guess.
     pub tearing: Vec<u32>,
     /// Rows with the columns they are solved for, in order.
@@ -32,8 +32,8 @@ pub(super) struct Torn {
 }
 
 /// Tears a loop.
-pub(super) fn tear(graph: &LoopGraph) -> Torn {
-    let mut state = State::new(graph);
+pub(super) fn tear(graph: &LoopGraph) -> TearingResult {
+    let mut state = TearingState::new(graph);
     state.causalize();
     while state.open_columns > 0 {
         let column = state.best_guess();
@@ -45,7 +45,7 @@ pub(super) fn tear(graph: &LoopGraph) -> Torn {
     state.torn
 }
 
-struct State<'a> {
+struct TearingState<'a> {
     graph: &'a LoopGraph,
     /// Rows of each column.
     rows_of: Vec<Vec<u32>>,
@@ -62,10 +62,10 @@ struct State<'a> {
     ready: Vec<u32>,
     /// Columns by score, possibly outdated.
     heap: BinaryHeap<(u64, Reverse<u32>)>,
-    torn: Torn,
+    torn: TearingResult,
 }
 
-impl<'a> State<'a> {
+impl<'a> TearingState<'a> {
     fn new(graph: &'a LoopGraph) -> Self {
         let mut rows_of = vec![Vec::new(); graph.liking.len()];
         let mut solvable = vec![false; graph.liking.len()];
@@ -77,7 +77,7 @@ impl<'a> State<'a> {
         }
         let open: Vec<u32> = graph.rows.iter().map(|columns| columns.len() as u32).collect();
         let ready = (0..open.len() as u32).rev().filter(|&r| open[r as usize] == 1).collect();
-        let mut made = State {
+        let mut made = TearingState {
             graph,
             rows_of,
             open,
@@ -88,7 +88,7 @@ impl<'a> State<'a> {
             open_columns: graph.liking.len(),
             ready,
             heap: BinaryHeap::new(),
-            torn: Torn::default(),
+            torn: TearingResult::default(),
         };
         for c in 0..graph.liking.len() as u32 {
             made.heap.push((made.score(c), Reverse(c)));

@@ -4,21 +4,21 @@
 //! equations can be matched without such products, the parameter may have another value in the next run; where they
 //! cannot, it is fixed with the structure, and so is whatever it is computed from.
 
-use super::draft::{Draft, Role};
+use super::draft::{DaeDraft, SystemRole};
 use super::dulmage_mendelsohn::decompose;
-use super::incidence::{Incidence, Scanner};
+use super::incidence::{IncidenceMatrix, IncidenceScanner};
 use super::matching::maximum;
-use super::parameters::{self, Known};
-use super::sorting::{Columns, System, SystemRow};
-use bramah_expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
+use super::parameters::{self, SignAnalysis};
+use super::sorting::{EquationSystem, SystemRow, UnknownColumns};
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Takes out all products whose factors are 0 by the values of these parameters.
-pub(super) fn take_out(draft: &mut Draft, known: &mut Known, decisive: &[VarId]) {
+pub(super) fn take_out(draft: &mut DaeDraft, known: &mut SignAnalysis, decisive: &[VarId]) {
     if decisive.is_empty() {
         return;
     }
-    let zeros = Zeros::find(draft, known);
+    let zeros = ZeroAnalysis::find(draft, known);
     let mut by_these = |factor: ExprId| zeros.parameters(draft, known, factor).iter().all(|v| decisive.contains(v));
     let taken: Vec<ExprId> = zeros.products.iter().filter(|(_, f)| by_these(*f)).map(|(e, _)| *e).collect();
     let map = without_products(draft, &taken);
@@ -27,8 +27,8 @@ pub(super) fn take_out(draft: &mut Draft, known: &mut Known, decisive: &[VarId])
 }
 
 /// The parameters with value 0 without whose products one of the systems cannot be matched.
-pub(super) fn decisive(draft: &mut Draft, known: &mut Known, systems: [&System; 2]) -> Vec<VarId> {
-    let zeros = Zeros::find(draft, known);
+pub(super) fn decisive(draft: &mut DaeDraft, known: &mut SignAnalysis, systems: [&EquationSystem; 2]) -> Vec<VarId> {
+    let zeros = ZeroAnalysis::find(draft, known);
     if zeros.products.is_empty() {
         return Vec::new();
     }
@@ -53,13 +53,13 @@ pub(super) fn decisive(draft: &mut Draft, known: &mut Known, systems: [&System; 
 }
 
 /// The image of every expression with 0 in the place of these products.
-fn without_products(draft: &mut Draft, products: &[ExprId]) -> Vec<ExprId> {
-    let taken: FxHashSet<Node> = products.iter().map(|e| draft.exprs.node(*e)).collect();
+fn without_products(draft: &mut DaeDraft, products: &[ExprId]) -> Vec<ExprId> {
+    let taken: FxHashSet<ExprNode> = products.iter().map(|e| draft.exprs.node(*e)).collect();
     draft.rewritten(|_, node| taken.contains(&node).then_some(Exprs::ZERO))
 }
 
 /// What is 0 by the values of parameters, and the products that such factors take out.
-struct Zeros {
+struct ZeroAnalysis {
     /// By expression.
     zero: Vec<bool>,
     /// By variable: the expression that it equals and that is 0.
@@ -68,10 +68,11 @@ struct Zeros {
     products: Vec<(ExprId, ExprId)>,
 }
 
-impl Zeros {
-    fn find(draft: &Draft, known: &mut Known) -> Self {
+impl ZeroAnalysis {
+    fn find(draft: &DaeDraft, known: &mut SignAnalysis) -> Self {
         let (count, pool) = (draft.variables.len(), &draft.exprs);
-        let mut found = Zeros { zero: vec![false; pool.len()], definition: vec![None; count], products: Vec::new() };
+        let mut found =
+            ZeroAnalysis { zero: vec![false; pool.len()], definition: vec![None; count], products: Vec::new() };
         let mut open: Vec<ExprId> = Vec::new();
         for e in (0..pool.len() as u32).map(ExprId) {
             found.zero[e.index()] = found.is_zero(draft, known, e);
@@ -79,7 +80,7 @@ impl Zeros {
         }
         found.spread(draft, known, open);
         for e in (0..draft.exprs.len() as u32).map(ExprId) {
-            let Node::Binary(Binary::Mul, a, b) = draft.exprs.node(e) else { continue };
+            let ExprNode::Binary(BinaryFunction::Mul, a, b) = draft.exprs.node(e) else { continue };
             for (factor, other) in [(a, b), (b, a)] {
                 let taken = found.zero[factor.index()] && draft.exprs.as_num(factor).is_none();
                 if taken && !found.zero[other.index()] && known.value(&draft.exprs, other).is_none() {
@@ -91,7 +92,7 @@ impl Zeros {
     }
 
     /// From what is 0 to the variables that equal it, and on to what is made of them.
-    fn spread(&mut self, draft: &Draft, known: &mut Known, mut open: Vec<ExprId>) {
+    fn spread(&mut self, draft: &DaeDraft, known: &mut SignAnalysis, mut open: Vec<ExprId>) {
         let mut defined: FxHashMap<ExprId, Vec<VarId>> = FxHashMap::default();
         for equation in &draft.equations {
             if let Some(v) = defined_by(draft, equation.lhs) {
@@ -101,7 +102,7 @@ impl Zeros {
         if !defined.keys().any(|value| self.zero[value.index()]) {
             return;
         }
-        let users = Users::new(draft);
+        let users = ExpressionUsers::new(draft);
         while let Some(e) = open.pop() {
             for v in defined.remove(&e).unwrap_or_default() {
                 self.definition[v.index()].get_or_insert(e);
@@ -120,18 +121,22 @@ impl Zeros {
         }
     }
 
-    fn is_zero(&self, draft: &Draft, known: &mut Known, e: ExprId) -> bool {
+    fn is_zero(&self, draft: &DaeDraft, known: &mut SignAnalysis, e: ExprId) -> bool {
         if let Some(value) = known.value(&draft.exprs, e) {
             return value == 0.0;
         }
         let zero = |a: ExprId| self.zero[a.index()];
         match draft.exprs.node(e) {
-            Node::Var(v) => self.definition[v.index()].is_some(),
-            Node::Unary(op, a) => KEEP_ZERO.contains(&op) && zero(a),
-            Node::Binary(Binary::Mul, a, b) => zero(a) || zero(b),
-            Node::Binary(Binary::Div, a, _) => zero(a),
-            Node::Binary(Binary::Add | Binary::Sub | Binary::Min | Binary::Max, a, b) => zero(a) && zero(b),
-            Node::If(condition, a, b) => match known.value(&draft.exprs, condition) {
+            ExprNode::Var(v) => self.definition[v.index()].is_some(),
+            ExprNode::Unary(op, a) => KEEP_ZERO.contains(&op) && zero(a),
+            ExprNode::Binary(BinaryFunction::Mul, a, b) => zero(a) || zero(b),
+            ExprNode::Binary(BinaryFunction::Div, a, _) => zero(a),
+            ExprNode::Binary(
+                BinaryFunction::Add | BinaryFunction::Sub | BinaryFunction::Min | BinaryFunction::Max,
+                a,
+                b,
+            ) => zero(a) && zero(b),
+            ExprNode::If(condition, a, b) => match known.value(&draft.exprs, condition) {
                 Some(value) => zero(if value == 0.0 { b } else { a }),
                 None => zero(a) && zero(b),
             },
@@ -140,19 +145,19 @@ impl Zeros {
     }
 
     /// The parameters that make an expression 0.
-    fn parameters(&self, draft: &Draft, known: &mut Known, e: ExprId) -> Vec<VarId> {
+    fn parameters(&self, draft: &DaeDraft, known: &mut SignAnalysis, e: ExprId) -> Vec<VarId> {
         let (mut open, mut seen, mut found) = (vec![e], FxHashSet::default(), Vec::new());
         while let Some(e) = open.pop() {
             if !seen.insert(e) {
                 continue;
             }
             match draft.exprs.node(e) {
-                Node::Var(v) if draft.role(v) == Role::Parameter => found.push(v),
-                Node::Var(v) => open.extend(self.definition[v.index()]),
-                Node::Binary(Binary::Mul, a, _) if self.zero[a.index()] => open.push(a),
-                Node::Binary(Binary::Mul, _, b) if self.zero[b.index()] => open.push(b),
-                Node::Binary(Binary::Div, a, _) if self.zero[a.index()] => open.push(a),
-                Node::If(condition, a, b) => match known.value(&draft.exprs, condition) {
+                ExprNode::Var(v) if draft.role(v) == SystemRole::Parameter => found.push(v),
+                ExprNode::Var(v) => open.extend(self.definition[v.index()]),
+                ExprNode::Binary(BinaryFunction::Mul, a, _) if self.zero[a.index()] => open.push(a),
+                ExprNode::Binary(BinaryFunction::Mul, _, b) if self.zero[b.index()] => open.push(b),
+                ExprNode::Binary(BinaryFunction::Div, a, _) if self.zero[a.index()] => open.push(a),
+                ExprNode::If(condition, a, b) => match known.value(&draft.exprs, condition) {
                     Some(value) => open.extend([condition, if value == 0.0 { b } else { a }]),
                     None => open.extend([a, b]),
                 },
@@ -168,22 +173,22 @@ impl Zeros {
 }
 
 /// The expressions that each expression stands in.
-struct Users {
+struct ExpressionUsers {
     starts: Vec<u32>,
     users: Vec<ExprId>,
     /// The node of each variable, if there is one.
     leaf: Vec<Option<ExprId>>,
 }
 
-impl Users {
-    fn new(draft: &Draft) -> Self {
+impl ExpressionUsers {
+    fn new(draft: &DaeDraft) -> Self {
         let pool = &draft.exprs;
         let all = || (0..pool.len() as u32).map(ExprId);
         let mut starts = vec![0_u32; pool.len() + 1];
         let mut leaf = vec![None; draft.variables.len()];
         for e in all() {
             pool.operands(e).as_slice().iter().for_each(|a| starts[a.index() + 1] += 1);
-            if let Node::Var(v) = pool.node(e)
+            if let ExprNode::Var(v) = pool.node(e)
                 && let Some(place) = leaf.get_mut(v.index())
             {
                 *place = Some(e);
@@ -198,7 +203,7 @@ impl Users {
                 next[a.index()] += 1;
             }
         }
-        Users { starts, users, leaf }
+        ExpressionUsers { starts, users, leaf }
     }
 
     fn of(&self, e: ExprId) -> impl Iterator<Item = ExprId> {
@@ -207,24 +212,33 @@ impl Users {
 }
 
 /// Functions that are 0 at 0.
-const KEEP_ZERO: [Unary; 9] =
-    [Unary::Neg, Unary::Abs, Unary::Sign, Unary::Sqrt, Unary::Sin, Unary::Tan, Unary::Atan, Unary::Sinh, Unary::Tanh];
+const KEEP_ZERO: [UnaryFunction; 9] = [
+    UnaryFunction::Neg,
+    UnaryFunction::Abs,
+    UnaryFunction::Sign,
+    UnaryFunction::Sqrt,
+    UnaryFunction::Sin,
+    UnaryFunction::Tan,
+    UnaryFunction::Atan,
+    UnaryFunction::Sinh,
+    UnaryFunction::Tanh,
+];
 
 /// The continuous variable that an equation with this left side defines.
-fn defined_by(draft: &Draft, lhs: ExprId) -> Option<VarId> {
+fn defined_by(draft: &DaeDraft, lhs: ExprId) -> Option<VarId> {
     match draft.exprs.node(lhs) {
-        Node::Var(v) if draft.role(v) == Role::Continuous => Some(v),
+        ExprNode::Var(v) if draft.role(v) == SystemRole::Continuous => Some(v),
         _ => None,
     }
 }
 
 /// The incidence of a system after its expressions have been replaced; an equation may still be solved for what it could
 /// be solved for before, if that still occurs.
-fn without(draft: &Draft, system: &System, map: &[ExprId]) -> Incidence {
+fn without(draft: &DaeDraft, system: &EquationSystem, map: &[ExprId]) -> IncidenceMatrix {
     let image = |e: ExprId| map.get(e.index()).copied().unwrap_or(e);
-    let columns = Columns::new(&system.columns, draft.variables.len());
-    let (mut left, mut made) = (Incidence::default(), Incidence::default());
-    let mut scanner = Scanner::default();
+    let columns = UnknownColumns::new(&system.columns, draft.variables.len());
+    let (mut left, mut made) = (IncidenceMatrix::default(), IncidenceMatrix::default());
+    let mut scanner = IncidenceScanner::default();
     for (row, SystemRow { equation, discrete, .. }) in system.rows.iter().enumerate() {
         let row = row as u32;
         let before = system.incidence.solvable(row);

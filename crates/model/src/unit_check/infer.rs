@@ -4,11 +4,11 @@
 //! it occurs in are worked through again. A relation is looked at a few times at most, so the work grows with the size of
 //! the model.
 
-use super::measure::{Measure, Quantity};
-use crate::flat::{FlatModel, Type, Variability, Variable, WhenAction};
-use bramah_expr::units::{Unit, UnitError};
-use bramah_expr::visit::Walk;
-use bramah_expr::{Binary, ExprId, Exprs, Node, Unary, VarId};
+use super::measure::{PartialUnit, UnitKnowledge};
+use crate::flat::{FlatModel, FlatVariable, ScalarType, Variability, WhenAction};
+use bramah_expr::units::{MeasurementUnit, UnitError};
+use bramah_expr::visit::NodeTraversal;
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use bramah_syntax::diag::Span;
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
@@ -18,32 +18,32 @@ const MOST_VISITS: u8 = 8;
 
 /// One side of a relation.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Side {
+pub(super) enum RelationSide {
     Expr(ExprId),
     Var(VarId),
 }
 
 /// Two sides that have the same unit, or one expression to look into.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Relation {
-    pub lhs: Option<Side>,
+pub(super) struct UnitRelation {
+    pub lhs: Option<RelationSide>,
     pub rhs: ExprId,
     pub span: Span,
     pub instance: u32,
 }
 
 /// All places of a model where units must fit.
-pub(super) fn relations(model: &FlatModel) -> Vec<Relation> {
+pub(super) fn relations(model: &FlatModel) -> Vec<UnitRelation> {
     let mut found = Vec::with_capacity(model.equations.len() + model.variables.len());
     for equation in model.equations.iter().chain(&model.initial_equations) {
         let (span, instance) = (equation.origin.span, equation.origin.instance);
-        found.push(Relation { lhs: Some(Side::Expr(equation.lhs)), rhs: equation.rhs, span, instance });
+        found.push(UnitRelation { lhs: Some(RelationSide::Expr(equation.lhs)), rhs: equation.rhs, span, instance });
     }
     for (i, variable) in (0..).zip(&model.variables) {
         let (span, instance) = (variable.origin.span, variable.origin.instance);
         let values = [variable.binding, variable.start, variable.min, variable.max, variable.nominal];
         for rhs in values.into_iter().flatten().filter(|&e| model.exprs.as_num(e).is_none()) {
-            found.push(Relation { lhs: Some(Side::Var(VarId(i))), rhs, span, instance });
+            found.push(UnitRelation { lhs: Some(RelationSide::Var(VarId(i))), rhs, span, instance });
         }
     }
     for branch in model.whens.iter().flat_map(|when| &when.branches) {
@@ -52,26 +52,26 @@ pub(super) fn relations(model: &FlatModel) -> Vec<Relation> {
                 action
             {
                 let (span, instance) = (origin.span, origin.instance);
-                found.push(Relation { lhs: Some(Side::Var(*variable)), rhs: *value, span, instance });
+                found.push(UnitRelation { lhs: Some(RelationSide::Var(*variable)), rhs: *value, span, instance });
             }
         }
     }
     for assert in &model.asserts {
         let (span, instance) = (assert.origin.span, assert.origin.instance);
-        found.push(Relation { lhs: None, rhs: assert.condition, span, instance });
+        found.push(UnitRelation { lhs: None, rhs: assert.condition, span, instance });
     }
     found
 }
 
 /// What is known about the units of a model.
-pub(super) struct Units<'a> {
+pub(super) struct UnitInference<'a> {
     pub model: &'a FlatModel,
     /// By variable.
-    pub variables: Vec<Measure>,
+    pub variables: Vec<UnitKnowledge>,
     /// The relation that gave an undeclared variable its unit.
     pub found_in: FxHashMap<VarId, u32>,
     /// By node, as of the last time that it was worked through.
-    nodes: Vec<Measure>,
+    nodes: Vec<UnitKnowledge>,
     /// The nodes of all relations, each in an order of evaluation.
     order: Vec<ExprId>,
     /// Where each relation's nodes begin in `order`, and one more for the end.
@@ -81,38 +81,38 @@ pub(super) struct Units<'a> {
 }
 
 /// A unit string that cannot be read, and a variable that has it.
-pub(super) type Unreadable = (VarId, UnitError);
+pub(super) type UnreadableUnit = (VarId, UnitError);
 
-impl<'a> Units<'a> {
+impl<'a> UnitInference<'a> {
     /// The declared units; those that cannot be read are unknown.
-    pub fn declared(model: &'a FlatModel, relations: &[Relation]) -> (Self, Vec<Unreadable>) {
-        let mut cache: FxHashMap<&str, Result<Unit, UnitError>> = FxHashMap::default();
+    pub fn declared(model: &'a FlatModel, relations: &[UnitRelation]) -> (Self, Vec<UnreadableUnit>) {
+        let mut cache: FxHashMap<&str, Result<MeasurementUnit, UnitError>> = FxHashMap::default();
         let mut unreadable = Vec::new();
         let mut variables = Vec::with_capacity(model.variables.len());
         for (i, variable) in (0..).zip(&model.variables) {
             let mut read = |text: &'a str| {
-                let unit = cache.entry(text).or_insert_with(|| Unit::parse(text)).clone();
+                let unit = cache.entry(text).or_insert_with(|| MeasurementUnit::parse(text)).clone();
                 unit.map_err(|error| unreadable.push((VarId(i), error))).ok()
             };
             let unit = variable.unit.as_deref().filter(|text| !text.is_empty()).map(&mut read);
             variable.display_unit.as_deref().filter(|text| !text.is_empty()).map(&mut read);
             variables.push(match unit {
-                Some(Some(unit)) => Measure::Known(Quantity::of(&unit)),
+                Some(Some(unit)) => UnitKnowledge::Known(PartialUnit::of(&unit)),
                 // An unreadable unit is not inferred either.
-                Some(None) => Measure::Wild,
+                Some(None) => UnitKnowledge::Wild,
                 None => undeclared(model, variable),
             });
         }
-        let nodes = vec![Measure::Unknown; model.exprs.len()];
+        let nodes = vec![UnitKnowledge::Unknown; model.exprs.len()];
         let found_in = FxHashMap::default();
         let (order, starts) = orders(&model.exprs, relations);
-        let units = Units { model, variables, found_in, nodes, order, starts, fresh: Vec::new() };
+        let units = UnitInference { model, variables, found_in, nodes, order, starts, fresh: Vec::new() };
         (units, unreadable)
     }
 
     /// Finds the units of undeclared variables, until nothing more follows.
-    pub fn infer(&mut self, relations: &[Relation]) {
-        if !self.variables.iter().any(|measure| matches!(measure, Measure::Unknown)) {
+    pub fn infer(&mut self, relations: &[UnitRelation]) {
+        if !self.variables.iter().any(|measure| matches!(measure, UnitKnowledge::Unknown)) {
             return;
         }
         let uses = self.uses(relations);
@@ -138,25 +138,25 @@ impl<'a> Units<'a> {
     }
 
     /// In which relations each undeclared variable occurs.
-    fn uses(&self, relations: &[Relation]) -> Uses {
+    fn uses(&self, relations: &[UnitRelation]) -> RelationUses {
         let mut pairs: Vec<(VarId, u32)> = Vec::new();
-        let unknown = |v: VarId| matches!(self.variables[v.index()], Measure::Unknown);
+        let unknown = |v: VarId| matches!(self.variables[v.index()], UnitKnowledge::Unknown);
         for (i, relation) in (0..).zip(relations) {
             for &e in &self.order[self.nodes_of(i as usize)] {
-                if let Node::Var(v) | Node::Der(v) | Node::Pre(v) = self.model.exprs.node(e)
+                if let ExprNode::Var(v) | ExprNode::Der(v) | ExprNode::Pre(v) = self.model.exprs.node(e)
                     && unknown(v)
                 {
                     pairs.push((v, i));
                 }
             }
-            if let Some(Side::Var(v)) = relation.lhs
+            if let Some(RelationSide::Var(v)) = relation.lhs
                 && unknown(v)
             {
                 pairs.push((v, i));
             }
         }
         pairs.sort_unstable();
-        Uses { pairs }
+        RelationUses { pairs }
     }
 
     /// Where the nodes of a relation are in `order`.
@@ -164,13 +164,13 @@ impl<'a> Units<'a> {
         self.starts[relation]..self.starts[relation + 1]
     }
 
-    fn work_through(&mut self, number: usize, relation: &Relation) {
+    fn work_through(&mut self, number: usize, relation: &UnitRelation) {
         self.evaluate(number, |_, _| {});
         let (left, right) = (self.side(relation.lhs), self.nodes[relation.rhs.index()]);
         if let Some(quantity) = right.known() {
             match relation.lhs {
-                Some(Side::Expr(e)) => self.expect(e, quantity),
-                Some(Side::Var(v)) => self.assign(v, Measure::Known(quantity)),
+                Some(RelationSide::Expr(e)) => self.expect(e, quantity),
+                Some(RelationSide::Var(v)) => self.assign(v, UnitKnowledge::Known(quantity)),
                 None => {}
             }
         }
@@ -193,68 +193,74 @@ impl<'a> Units<'a> {
     }
 
     /// The unit of a node that was just worked through.
-    pub fn of(&self, e: ExprId) -> Measure {
+    pub fn of(&self, e: ExprId) -> UnitKnowledge {
         self.nodes[e.index()]
     }
 
     /// The unit of a side that was just worked through.
-    pub fn side(&self, side: Option<Side>) -> Measure {
+    pub fn side(&self, side: Option<RelationSide>) -> UnitKnowledge {
         match side {
-            Some(Side::Expr(e)) => self.of(e),
-            Some(Side::Var(v)) => self.variables[v.index()],
-            None => Measure::Unknown,
+            Some(RelationSide::Expr(e)) => self.of(e),
+            Some(RelationSide::Var(v)) => self.variables[v.index()],
+            None => UnitKnowledge::Unknown,
         }
     }
 
-    fn combine(&self, e: ExprId) -> Measure {
+    fn combine(&self, e: ExprId) -> UnitKnowledge {
         match self.model.exprs.node(e) {
-            Node::Num(bits) => Measure::of_number(f64::from_bits(bits)),
+            ExprNode::Num(bits) => UnitKnowledge::of_number(f64::from_bits(bits)),
             // `sin(time)` and `x = time` are common and harmless.
-            Node::Time => Measure::Unknown,
-            Node::Var(v) | Node::Pre(v) => self.variables[v.index()],
-            Node::Der(v) => self.variables[v.index()].over(Measure::Known(Quantity::SECOND)),
-            Node::Unary(op, a) => unary(op, self.of(a)),
-            Node::EventFloor(a) | Node::Delay(a, _) => self.of(a),
-            Node::Binary(op, a, b) => self.binary(op, a, b),
-            Node::Rel(..) | Node::EventRel(..) | Node::Sample(..) | Node::Initial | Node::Terminal => Measure::Number,
-            Node::If(_, a, b) | Node::Homotopy(a, b) => self.of(a).join(self.of(b)),
-            Node::Call(..) => Measure::Unknown,
+            ExprNode::Time => UnitKnowledge::Unknown,
+            ExprNode::Var(v) | ExprNode::Pre(v) => self.variables[v.index()],
+            ExprNode::Der(v) => self.variables[v.index()].over(UnitKnowledge::Known(PartialUnit::SECOND)),
+            ExprNode::Unary(op, a) => unary(op, self.of(a)),
+            ExprNode::EventFloor(a) | ExprNode::Delay(a, _) => self.of(a),
+            ExprNode::Binary(op, a, b) => self.binary(op, a, b),
+            ExprNode::Rel(..)
+            | ExprNode::EventRel(..)
+            | ExprNode::Sample(..)
+            | ExprNode::Initial
+            | ExprNode::Terminal => UnitKnowledge::Number,
+            ExprNode::If(_, a, b) | ExprNode::Homotopy(a, b) => self.of(a).join(self.of(b)),
+            ExprNode::Call(..) => UnitKnowledge::Unknown,
         }
     }
 
-    fn binary(&self, op: Binary, a: ExprId, b: ExprId) -> Measure {
+    fn binary(&self, op: BinaryFunction, a: ExprId, b: ExprId) -> UnitKnowledge {
         let (left, right) = (self.of(a), self.of(b));
         match op {
-            Binary::Add => left.sum(right, 1.0),
-            Binary::Sub => left.sum(right, -1.0),
-            Binary::Mul => left.times(right),
-            Binary::Div => left.over(right),
-            Binary::Min | Binary::Max => left.join(right),
-            Binary::Pow => match (self.model.exprs.as_num(b), left) {
+            BinaryFunction::Add => left.sum(right, 1.0),
+            BinaryFunction::Sub => left.sum(right, -1.0),
+            BinaryFunction::Mul => left.times(right),
+            BinaryFunction::Div => left.over(right),
+            BinaryFunction::Min | BinaryFunction::Max => left.join(right),
+            BinaryFunction::Pow => match (self.model.exprs.as_num(b), left) {
                 (Some(exponent), _) => left.power(exponent),
-                (None, Measure::Known(base)) if base.difference(Quantity::NUMBER).is_none() => Measure::Number,
-                (None, Measure::Number) => Measure::Number,
-                _ => Measure::Unknown,
+                (None, UnitKnowledge::Known(base)) if base.difference(PartialUnit::NUMBER).is_none() => {
+                    UnitKnowledge::Number
+                }
+                (None, UnitKnowledge::Number) => UnitKnowledge::Number,
+                _ => UnitKnowledge::Unknown,
             },
-            Binary::Atan2 | Binary::And | Binary::Or => Measure::Number,
+            BinaryFunction::Atan2 | BinaryFunction::And | BinaryFunction::Or => UnitKnowledge::Number,
         }
     }
 
     /// A node without a unit of its own gets the one that its place asks for.
-    fn expect(&mut self, e: ExprId, quantity: Quantity) {
-        if matches!(self.nodes[e.index()], Measure::Unknown) {
-            self.nodes[e.index()] = Measure::Known(quantity);
+    fn expect(&mut self, e: ExprId, quantity: PartialUnit) {
+        if matches!(self.nodes[e.index()], UnitKnowledge::Unknown) {
+            self.nodes[e.index()] = UnitKnowledge::Known(quantity);
         }
     }
 
-    fn expect_measure(&mut self, e: ExprId, measure: Measure) {
-        if let Measure::Known(quantity) = measure {
+    fn expect_measure(&mut self, e: ExprId, measure: UnitKnowledge) {
+        if let UnitKnowledge::Known(quantity) = measure {
             self.expect(e, quantity);
         }
     }
 
-    fn assign(&mut self, v: VarId, measure: Measure) {
-        if matches!((self.variables[v.index()], measure), (Measure::Unknown, Measure::Known(_))) {
+    fn assign(&mut self, v: VarId, measure: UnitKnowledge) {
+        if matches!((self.variables[v.index()], measure), (UnitKnowledge::Unknown, UnitKnowledge::Known(_))) {
             self.variables[v.index()] = measure;
             self.fresh.push(v);
         }
@@ -263,35 +269,38 @@ impl<'a> Units<'a> {
     /// Top-down: what a node's unit says about its arguments.
     fn push_down(&mut self, e: ExprId) {
         let node = self.model.exprs.node(e);
-        if let Node::Rel(_, a, b) | Node::EventRel(_, a, b) = node {
+        if let ExprNode::Rel(_, a, b) | ExprNode::EventRel(_, a, b) = node {
             return self.equalize(a, b);
         }
-        let Measure::Known(quantity) = self.of(e) else { return };
+        let UnitKnowledge::Known(quantity) = self.of(e) else { return };
         match node {
-            Node::Var(v) | Node::Pre(v) => self.assign(v, Measure::Known(quantity)),
-            Node::Der(v) => self.assign(v, quantity.times(Quantity::SECOND)),
-            Node::Unary(Unary::Neg | Unary::Abs | Unary::Floor, a) | Node::EventFloor(a) => self.expect(a, quantity),
-            Node::Unary(Unary::Sqrt, a) => self.expect_measure(a, quantity.power(2.0)),
-            Node::If(_, a, b) | Node::Homotopy(a, b) | Node::Binary(Binary::Min | Binary::Max, a, b) => {
+            ExprNode::Var(v) | ExprNode::Pre(v) => self.assign(v, UnitKnowledge::Known(quantity)),
+            ExprNode::Der(v) => self.assign(v, quantity.times(PartialUnit::SECOND)),
+            ExprNode::Unary(UnaryFunction::Neg | UnaryFunction::Abs | UnaryFunction::Floor, a)
+            | ExprNode::EventFloor(a) => self.expect(a, quantity),
+            ExprNode::Unary(UnaryFunction::Sqrt, a) => self.expect_measure(a, quantity.power(2.0)),
+            ExprNode::If(_, a, b)
+            | ExprNode::Homotopy(a, b)
+            | ExprNode::Binary(BinaryFunction::Min | BinaryFunction::Max, a, b) => {
                 self.expect(a, quantity);
                 self.expect(b, quantity);
             }
-            Node::Binary(Binary::Add | Binary::Sub, a, b) => {
+            ExprNode::Binary(BinaryFunction::Add | BinaryFunction::Sub, a, b) => {
                 // With a number or a zero point in the sum, that of the other term is not known.
                 let term =
                     if quantity.offset == 0.0 && self.is_plain_sum(a, b) { quantity } else { quantity.shifted() };
                 self.expect(a, term);
                 self.expect(b, term);
             }
-            Node::Binary(Binary::Mul, a, b) => {
-                self.expect_measure(a, Measure::Known(quantity).over(self.of(b)));
-                self.expect_measure(b, Measure::Known(quantity).over(self.of(a)));
+            ExprNode::Binary(BinaryFunction::Mul, a, b) => {
+                self.expect_measure(a, UnitKnowledge::Known(quantity).over(self.of(b)));
+                self.expect_measure(b, UnitKnowledge::Known(quantity).over(self.of(a)));
             }
-            Node::Binary(Binary::Div, a, b) => {
-                self.expect_measure(a, Measure::Known(quantity).times(self.of(b)));
-                self.expect_measure(b, self.of(a).over(Measure::Known(quantity)));
+            ExprNode::Binary(BinaryFunction::Div, a, b) => {
+                self.expect_measure(a, UnitKnowledge::Known(quantity).times(self.of(b)));
+                self.expect_measure(b, self.of(a).over(UnitKnowledge::Known(quantity)));
             }
-            Node::Binary(Binary::Pow, a, b) => {
+            ExprNode::Binary(BinaryFunction::Pow, a, b) => {
                 if let Some(exponent) = self.model.exprs.as_num(b).filter(|&x| x != 0.0) {
                     self.expect_measure(a, quantity.power(1.0 / exponent));
                 }
@@ -307,46 +316,46 @@ impl<'a> Units<'a> {
     }
 
     fn is_plain_sum(&self, a: ExprId, b: ExprId) -> bool {
-        !matches!(self.of(a), Measure::Wild) && !matches!(self.of(b), Measure::Wild)
+        !matches!(self.of(a), UnitKnowledge::Wild) && !matches!(self.of(b), UnitKnowledge::Wild)
     }
 }
 
 /// Variables that declare no unit: whole numbers and truth values count, a parameter that is just a number may stand for
 /// anything, the rest is to be found.
-fn undeclared(model: &FlatModel, variable: &Variable) -> Measure {
+fn undeclared(model: &FlatModel, variable: &FlatVariable) -> UnitKnowledge {
     let is_number = |e: Option<ExprId>| e.is_none_or(|e| model.exprs.as_num(e).is_some());
-    if variable.ty != Type::Real {
-        Measure::Number
+    if variable.ty != ScalarType::Real {
+        UnitKnowledge::Number
     } else if variable.variability <= Variability::Parameter && is_number(variable.binding) {
-        variable.binding.and_then(|e| model.exprs.as_num(e)).map_or(Measure::Wild, parameter)
+        variable.binding.and_then(|e| model.exprs.as_num(e)).map_or(UnitKnowledge::Wild, parameter)
     } else {
-        Measure::Unknown
+        UnitKnowledge::Unknown
     }
 }
 
 /// A constant of pi stays one; any other parameter may be set to something else.
-fn parameter(value: f64) -> Measure {
-    match Measure::of_number(value) {
-        Measure::Circle => Measure::Circle,
-        _ => Measure::Wild,
+fn parameter(value: f64) -> UnitKnowledge {
+    match UnitKnowledge::of_number(value) {
+        UnitKnowledge::Circle => UnitKnowledge::Circle,
+        _ => UnitKnowledge::Wild,
     }
 }
 
-fn unary(op: Unary, a: Measure) -> Measure {
+fn unary(op: UnaryFunction, a: UnitKnowledge) -> UnitKnowledge {
     match op {
-        Unary::Neg | Unary::Abs | Unary::Floor => a,
-        Unary::Sqrt => a.power(0.5),
-        _ => Measure::Number,
+        UnaryFunction::Neg | UnaryFunction::Abs | UnaryFunction::Floor => a,
+        UnaryFunction::Sqrt => a.power(0.5),
+        _ => UnitKnowledge::Number,
     }
 }
 
 /// The nodes of each relation in an order of evaluation, and where those of each begin.
-fn orders(pool: &Exprs, relations: &[Relation]) -> (Vec<ExprId>, Vec<usize>) {
-    let mut walk = Walk::default();
+fn orders(pool: &Exprs, relations: &[UnitRelation]) -> (Vec<ExprId>, Vec<usize>) {
+    let mut walk = NodeTraversal::default();
     let (mut order, mut starts) = (Vec::new(), vec![0]);
     for relation in relations {
         let left = match relation.lhs {
-            Some(Side::Expr(e)) => e,
+            Some(RelationSide::Expr(e)) => e,
             _ => relation.rhs,
         };
         walk.each(pool, &[left, relation.rhs], |e, _| {
@@ -361,11 +370,11 @@ fn orders(pool: &Exprs, relations: &[Relation]) -> (Vec<ExprId>, Vec<usize>) {
 }
 
 /// Sorted pairs of variable and relation.
-struct Uses {
+struct RelationUses {
     pairs: Vec<(VarId, u32)>,
 }
 
-impl Uses {
+impl RelationUses {
     fn of(&self, v: VarId) -> impl Iterator<Item = &u32> {
         let from = self.pairs.partition_point(|pair| pair.0 < v);
         self.pairs[from..].iter().take_while(move |pair| pair.0 == v).map(|pair| &pair.1)
@@ -374,8 +383,8 @@ impl Uses {
 
 /// Whether an argument of this function must be a plain number. Of a logarithm it need not: `log(x) + C` is `log(x/c)`,
 /// and empirical laws are written so.
-pub(super) fn takes_numbers(op: Unary) -> bool {
-    use Unary::{Acos, Asin, Atan, Cos, Cosh, Exp, Sin, Sinh, Tan, Tanh};
+pub(super) fn takes_numbers(op: UnaryFunction) -> bool {
+    use UnaryFunction::{Acos, Asin, Atan, Cos, Cosh, Exp, Sin, Sinh, Tan, Tanh};
     matches!(op, Sin | Cos | Tan | Asin | Acos | Atan | Sinh | Cosh | Tanh | Exp)
 }
 

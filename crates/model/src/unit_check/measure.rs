@@ -5,12 +5,12 @@
 
 use bramah_expr::print::number;
 use bramah_expr::units::power_of;
-use bramah_expr::units::{Dimension, Unit};
+use bramah_expr::units::{Dimension, MeasurementUnit};
 use std::f64::consts::{PI, TAU};
 
-/// A unit as far as it is known. `factor` and `offset` are as in [`Unit`], NaN when not known.
+/// A unit as far as it is known. `factor` and `offset` are as in [`MeasurementUnit`], NaN when not known.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Quantity {
+pub(super) struct PartialUnit {
     pub dimension: Dimension,
     pub angle: i16,
     pub factor: f64,
@@ -19,7 +19,7 @@ pub(super) struct Quantity {
 
 /// What is known about the unit of an expression.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Measure {
+pub(super) enum UnitKnowledge {
     /// Nothing.
     Unknown,
     /// A count, a truth value, a small ratio or the result of `sin` and the like: fits anywhere; 1 in products.
@@ -29,71 +29,73 @@ pub(super) enum Measure {
     /// Any other number: fits anywhere; makes products unknown.
     Wild,
     /// A unit.
-    Known(Quantity),
+    Known(PartialUnit),
 }
 
 /// How two units that should be the same differ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Difference {
+pub(super) enum UnitDifference {
     Dimension,
     /// Same dimension, other factor or offset.
     Factor,
 }
 
-impl Quantity {
-    pub const NUMBER: Quantity = Quantity { dimension: Dimension::NONE, angle: 0, factor: 1.0, offset: 0.0 };
-    pub const SECOND: Quantity = Quantity { dimension: Dimension::TIME, ..Quantity::NUMBER };
+impl PartialUnit {
+    pub const NUMBER: PartialUnit = PartialUnit { dimension: Dimension::NONE, angle: 0, factor: 1.0, offset: 0.0 };
+    pub const SECOND: PartialUnit = PartialUnit { dimension: Dimension::TIME, ..PartialUnit::NUMBER };
 
-    pub fn of(unit: &Unit) -> Self {
-        Quantity { dimension: unit.dimension, angle: unit.angle, factor: unit.factor(), offset: unit.offset }
+    pub fn of(unit: &MeasurementUnit) -> Self {
+        PartialUnit { dimension: unit.dimension, angle: unit.angle, factor: unit.factor(), offset: unit.offset }
     }
 
-    pub fn times(self, other: Quantity) -> Measure {
+    pub fn times(self, other: PartialUnit) -> UnitKnowledge {
         let dimension = self.dimension.times(other.dimension);
         let angle = self.angle.checked_add(other.angle);
         Self::made(dimension, angle, self.factor * other.factor)
     }
 
-    pub fn over(self, other: Quantity) -> Measure {
+    pub fn over(self, other: PartialUnit) -> UnitKnowledge {
         let dimension = self.dimension.over(other.dimension);
         let angle = self.angle.checked_sub(other.angle);
         Self::made(dimension, angle, self.factor / other.factor)
     }
 
-    pub fn power(self, exponent: f64) -> Measure {
+    pub fn power(self, exponent: f64) -> UnitKnowledge {
         let angle = power_of(self.angle, exponent);
         Self::made(self.dimension.power(exponent), angle, self.factor.powf(exponent))
     }
 
     /// The same unit with a zero point that is not known.
-    pub fn shifted(self) -> Quantity {
-        Quantity { offset: f64::NAN, ..self }
+    pub fn shifted(self) -> PartialUnit {
+        PartialUnit { offset: f64::NAN, ..self }
     }
 
-    fn made(dimension: Option<Dimension>, angle: Option<i16>, factor: f64) -> Measure {
+    fn made(dimension: Option<Dimension>, angle: Option<i16>, factor: f64) -> UnitKnowledge {
         match (dimension, angle) {
-            (Some(dimension), Some(angle)) => Measure::Known(Quantity { dimension, angle, factor, offset: 0.0 }),
-            _ => Measure::Unknown,
+            (Some(dimension), Some(angle)) => {
+                UnitKnowledge::Known(PartialUnit { dimension, angle, factor, offset: 0.0 })
+            }
+            _ => UnitKnowledge::Unknown,
         }
     }
 
     /// What keeps two values from being equal, as far as both are known.
-    pub fn difference(self, other: Quantity) -> Option<Difference> {
+    pub fn difference(self, other: PartialUnit) -> Option<UnitDifference> {
         if self.dimension != other.dimension {
-            return Some(Difference::Dimension);
+            return Some(UnitDifference::Dimension);
         }
         let ratio = self.factor / other.factor;
         // `1/min` may count revolutions: a factor 2 pi against a unit without angle is none.
         let counts = (self.angle == 0) != (other.angle == 0) && (same(ratio, TAU) || same(ratio * TAU, 1.0));
         let factor = !ratio.is_nan() && !same(ratio, 1.0) && !counts;
         let offset = (self.offset - other.offset).abs() > 1e-6;
-        (factor || offset).then_some(Difference::Factor)
+        (factor || offset).then_some(UnitDifference::Factor)
     }
 
     /// One of two equal units: what one lacks is taken from the other.
-    fn merge(self, other: Quantity) -> Quantity {
+    fn merge(self, other: PartialUnit) -> PartialUnit {
         let known = |a: f64, b: f64| if a.is_nan() { b } else { a };
-        Quantity { factor: known(self.factor, other.factor), offset: known(self.offset, other.offset), ..self }
+        PartialUnit { factor: known(self.factor, other.factor), offset: known(self.offset, other.offset), ..self }
     }
 }
 
@@ -101,46 +103,46 @@ fn same(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-6 * b.abs()
 }
 
-impl Measure {
+impl UnitKnowledge {
     /// The class of a number.
-    pub fn of_number(value: f64) -> Measure {
+    pub fn of_number(value: f64) -> UnitKnowledge {
         let turns = value / PI;
         if is_small_ratio(value, &[1.0, 2.0, 3.0, 4.0]) {
-            Measure::Number
+            UnitKnowledge::Number
         } else if is_small_ratio(turns, &[1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 32.0, 64.0]) {
-            Measure::Circle
+            UnitKnowledge::Circle
         } else {
-            Measure::Wild
+            UnitKnowledge::Wild
         }
     }
 
-    pub fn known(self) -> Option<Quantity> {
+    pub fn known(self) -> Option<PartialUnit> {
         match self {
-            Measure::Known(quantity) => Some(quantity),
+            UnitKnowledge::Known(quantity) => Some(quantity),
             _ => None,
         }
     }
 
     /// As a factor in a product: the unit it contributes.
-    fn as_factor(self) -> Option<Quantity> {
+    fn as_factor(self) -> Option<PartialUnit> {
         match self {
-            Measure::Number => Some(Quantity::NUMBER),
-            Measure::Circle => Some(Quantity { factor: f64::NAN, ..Quantity::NUMBER }),
-            Measure::Known(quantity) => Some(quantity),
-            Measure::Unknown | Measure::Wild => None,
+            UnitKnowledge::Number => Some(PartialUnit::NUMBER),
+            UnitKnowledge::Circle => Some(PartialUnit { factor: f64::NAN, ..PartialUnit::NUMBER }),
+            UnitKnowledge::Known(quantity) => Some(quantity),
+            UnitKnowledge::Unknown | UnitKnowledge::Wild => None,
         }
     }
 
-    pub fn times(self, other: Measure) -> Measure {
-        self.product(other, Quantity::times)
+    pub fn times(self, other: UnitKnowledge) -> UnitKnowledge {
+        self.product(other, PartialUnit::times)
     }
 
-    pub fn over(self, other: Measure) -> Measure {
-        self.product(other, Quantity::over)
+    pub fn over(self, other: UnitKnowledge) -> UnitKnowledge {
+        self.product(other, PartialUnit::over)
     }
 
-    fn product(self, other: Measure, op: fn(Quantity, Quantity) -> Measure) -> Measure {
-        use Measure::{Circle, Known, Number, Unknown, Wild};
+    fn product(self, other: UnitKnowledge, op: fn(PartialUnit, PartialUnit) -> UnitKnowledge) -> UnitKnowledge {
+        use UnitKnowledge::{Circle, Known, Number, Unknown, Wild};
         match (self, other) {
             (Unknown, _) | (_, Unknown) | (Wild, Known(_)) | (Known(_), Wild) => Unknown,
             (Wild, _) | (_, Wild) => Wild,
@@ -148,7 +150,9 @@ impl Measure {
             (Number | Circle, Number | Circle) => Circle,
             // Twice a temperature in degC may be the first half of a mean.
             (Known(quantity), Number) if quantity.offset.is_nan() => self,
-            (Number, Known(quantity)) if quantity.offset.is_nan() => op(Quantity::NUMBER, quantity).with_free_offset(),
+            (Number, Known(quantity)) if quantity.offset.is_nan() => {
+                op(PartialUnit::NUMBER, quantity).with_free_offset()
+            }
             _ => match (self.as_factor(), other.as_factor()) {
                 (Some(a), Some(b)) => op(a, b),
                 _ => Unknown,
@@ -156,21 +160,21 @@ impl Measure {
         }
     }
 
-    fn with_free_offset(self) -> Measure {
-        self.known().map_or(self, |quantity| Measure::Known(quantity.shifted()))
+    fn with_free_offset(self) -> UnitKnowledge {
+        self.known().map_or(self, |quantity| UnitKnowledge::Known(quantity.shifted()))
     }
 
-    pub fn power(self, exponent: f64) -> Measure {
+    pub fn power(self, exponent: f64) -> UnitKnowledge {
         match self {
-            Measure::Known(quantity) => quantity.power(exponent),
-            Measure::Circle => Measure::Wild,
+            UnitKnowledge::Known(quantity) => quantity.power(exponent),
+            UnitKnowledge::Circle => UnitKnowledge::Wild,
             other => other,
         }
     }
 
     /// Two sides that must be the same.
-    pub fn join(self, other: Measure) -> Measure {
-        use Measure::{Known, Number, Unknown, Wild};
+    pub fn join(self, other: UnitKnowledge) -> UnitKnowledge {
+        use UnitKnowledge::{Known, Number, Unknown, Wild};
         match (self, other) {
             (Known(a), Known(b)) => Known(a.merge(b)),
             (Known(a), Wild) | (Wild, Known(a)) => Known(a.shifted()),
@@ -183,15 +187,15 @@ impl Measure {
 
     /// The sum (`sign` 1) or difference (-1). The difference of two temperatures has no zero point; a temperature plus
     /// a difference is again a temperature, and which one was which is not known.
-    pub fn sum(self, other: Measure, sign: f64) -> Measure {
+    pub fn sum(self, other: UnitKnowledge, sign: f64) -> UnitKnowledge {
         let joined = self.join(other);
-        let (Measure::Known(a), Measure::Known(b)) = (self, other) else { return joined };
+        let (UnitKnowledge::Known(a), UnitKnowledge::Known(b)) = (self, other) else { return joined };
         let offset = match (a.offset, b.offset) {
             (0.0, 0.0) => 0.0,
             (x, y) if x == y && sign < 0.0 => 0.0,
             _ => f64::NAN,
         };
-        joined.known().map_or(joined, |q| Measure::Known(Quantity { offset, ..q }))
+        joined.known().map_or(joined, |q| UnitKnowledge::Known(PartialUnit { offset, ..q }))
     }
 }
 
@@ -204,7 +208,7 @@ fn is_small_ratio(value: f64, denominators: &[f64]) -> bool {
 }
 
 /// As `Pa`, or `0.01 1/s` when one is not the coherent SI unit.
-impl std::fmt::Display for Quantity {
+impl std::fmt::Display for PartialUnit {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if !self.factor.is_nan() && !same(self.factor, 1.0) {
             write!(f, "{} ", number(self.factor, Some(6)))?;
@@ -228,13 +232,13 @@ mod tests {
     #[test]
     fn numbers_are_classed() {
         for x in [1.0, 2.0, -0.5, 0.25, 4.0, 1.0 / 3.0, 4.0 / 3.0] {
-            assert!(matches!(Measure::of_number(x), Measure::Number), "{x}");
+            assert!(matches!(UnitKnowledge::of_number(x), UnitKnowledge::Number), "{x}");
         }
         for x in [PI, TAU, PI / 4.0, 4.0 / 3.0 * PI] {
-            assert!(matches!(Measure::of_number(x), Measure::Circle), "{x}");
+            assert!(matches!(UnitKnowledge::of_number(x), UnitKnowledge::Circle), "{x}");
         }
         for x in [0.0, 60.0, 1e5, 9.81, 3.6, 1e-3, 10.0] {
-            assert!(matches!(Measure::of_number(x), Measure::Wild), "{x}");
+            assert!(matches!(UnitKnowledge::of_number(x), UnitKnowledge::Wild), "{x}");
         }
     }
 }

@@ -4,11 +4,11 @@ mod infer;
 mod measure;
 
 use crate::flat::FlatModel;
-use bramah_expr::units::{Unit, UnitError};
-use bramah_expr::{Binary, ExprId, Node, VarId};
+use bramah_expr::units::{MeasurementUnit, UnitError};
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, VarId};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
-use infer::{Relation, Side, Units};
-use measure::{Difference, Measure, Quantity};
+use infer::{RelationSide, UnitInference, UnitRelation};
+use measure::{PartialUnit, UnitDifference, UnitKnowledge};
 use rustc_hash::FxHashSet;
 
 /// So many terms are listed in a message.
@@ -19,7 +19,7 @@ const MOST_TERMS: usize = 8;
 /// however many instances its class has. What is not known is not reported.
 pub fn check(model: &FlatModel) -> Vec<Diagnostic> {
     let relations = infer::relations(model);
-    let (mut units, unreadable) = Units::declared(model, &relations);
+    let (mut units, unreadable) = UnitInference::declared(model, &relations);
     let mut found = unreadable_units(model, &unreadable);
     found.extend(display_units(model));
     units.infer(&relations);
@@ -41,47 +41,54 @@ pub fn check(model: &FlatModel) -> Vec<Diagnostic> {
 }
 
 /// Two quantities that should have the same unit.
-struct Mismatch {
-    difference: Difference,
+struct UnitMismatch {
+    difference: UnitDifference,
     /// The node inside the relation at which they meet; `None` for the relation itself.
     part: Option<ExprId>,
-    left: Quantity,
-    right: Quantity,
+    left: PartialUnit,
+    right: PartialUnit,
 }
 
-fn mismatch(part: Option<ExprId>, left: Measure, right: Measure) -> Option<Mismatch> {
+fn mismatch(part: Option<ExprId>, left: UnitKnowledge, right: UnitKnowledge) -> Option<UnitMismatch> {
     let (left, right) = (left.known()?, right.known()?);
     let difference = left.difference(right)?;
-    Some(Mismatch { difference, part, left, right })
+    Some(UnitMismatch { difference, part, left, right })
 }
 
-fn outer_mismatch(units: &Units, relation: &Relation) -> Option<Mismatch> {
+fn outer_mismatch(units: &UnitInference, relation: &UnitRelation) -> Option<UnitMismatch> {
     mismatch(None, units.side(relation.lhs), units.of(relation.rhs))
 }
 
-fn inner_mismatch(units: &Units, e: ExprId) -> Option<Mismatch> {
-    let number = Measure::Known(Quantity::NUMBER);
+fn inner_mismatch(units: &UnitInference, e: ExprId) -> Option<UnitMismatch> {
+    let number = UnitKnowledge::Known(PartialUnit::NUMBER);
     let (left, right) = match units.model.exprs.node(e) {
-        Node::Rel(_, a, b) | Node::EventRel(_, a, b) => (units.of(a), units.of(b)),
-        Node::Binary(Binary::Sub | Binary::Add, a, b) => {
+        ExprNode::Rel(_, a, b) | ExprNode::EventRel(_, a, b) => (units.of(a), units.of(b)),
+        ExprNode::Binary(BinaryFunction::Sub | BinaryFunction::Add, a, b) => {
             // A temperature and a difference of temperatures may be added.
-            let free = |e| units.of(e).known().map_or(units.of(e), |q| Measure::Known(q.shifted()));
+            let free = |e| units.of(e).known().map_or(units.of(e), |q| UnitKnowledge::Known(q.shifted()));
             (free(a), free(b))
         }
-        Node::Binary(Binary::Min | Binary::Max | Binary::Atan2, a, b) => (units.of(a), units.of(b)),
-        Node::If(_, a, b) | Node::Homotopy(a, b) => (units.of(a), units.of(b)),
-        Node::Unary(op, a) if infer::takes_numbers(op) => (units.of(a), number),
-        Node::Binary(Binary::Pow, _, b) => (units.of(b), number),
+        ExprNode::Binary(BinaryFunction::Min | BinaryFunction::Max | BinaryFunction::Atan2, a, b) => {
+            (units.of(a), units.of(b))
+        }
+        ExprNode::If(_, a, b) | ExprNode::Homotopy(a, b) => (units.of(a), units.of(b)),
+        ExprNode::Unary(op, a) if infer::takes_numbers(op) => (units.of(a), number),
+        ExprNode::Binary(BinaryFunction::Pow, _, b) => (units.of(b), number),
         _ => return None,
     };
     mismatch(Some(e), left, right)
 }
 
-fn report(units: &Units, relations: &[Relation], relation: &Relation, mismatch: &Mismatch) -> Diagnostic {
+fn report(
+    units: &UnitInference,
+    relations: &[UnitRelation],
+    relation: &UnitRelation,
+    mismatch: &UnitMismatch,
+) -> Diagnostic {
     let model = units.model;
     let code = match mismatch.difference {
-        Difference::Dimension => Code::UnitMismatch,
-        Difference::Factor => Code::UnitFactor,
+        UnitDifference::Dimension => Code::UnitMismatch,
+        UnitDifference::Factor => Code::UnitFactor,
     };
     let places = meeting_places(units, relation, mismatch);
     let [left, right] = [(places.0, mismatch.left), (places.1, mismatch.right)]
@@ -92,7 +99,8 @@ fn report(units: &Units, relations: &[Relation], relation: &Relation, mismatch: 
     if !instance.name.is_empty() {
         diagnostic = diagnostic.instance(&instance.name);
     }
-    for (v, span, line) in terms(units, relations, mismatch.part.map_or(Side::Expr(relation.rhs), Side::Expr), relation)
+    for (v, span, line) in
+        terms(units, relations, mismatch.part.map_or(RelationSide::Expr(relation.rhs), RelationSide::Expr), relation)
     {
         diagnostic = diagnostic.note(line);
         if let Some(span) = span.filter(|&span| span != relation.span) {
@@ -101,31 +109,35 @@ fn report(units: &Units, relations: &[Relation], relation: &Relation, mismatch: 
         }
     }
     match mismatch.difference {
-        Difference::Factor => diagnostic.help(conversion(mismatch)),
-        Difference::Dimension => diagnostic,
+        UnitDifference::Factor => diagnostic.help(conversion(mismatch)),
+        UnitDifference::Dimension => diagnostic,
     }
 }
 
 /// What is compared, when it is an expression.
-fn meeting_places(units: &Units, relation: &Relation, mismatch: &Mismatch) -> (Option<Side>, Option<Side>) {
-    let Some(part) = mismatch.part else { return (relation.lhs, Some(Side::Expr(relation.rhs))) };
+fn meeting_places(
+    units: &UnitInference,
+    relation: &UnitRelation,
+    mismatch: &UnitMismatch,
+) -> (Option<RelationSide>, Option<RelationSide>) {
+    let Some(part) = mismatch.part else { return (relation.lhs, Some(RelationSide::Expr(relation.rhs))) };
     match units.model.exprs.node(part) {
-        Node::Unary(_, a) | Node::Binary(Binary::Pow, _, a) => (Some(Side::Expr(a)), None),
-        Node::Binary(_, a, b)
-        | Node::Rel(_, a, b)
-        | Node::EventRel(_, a, b)
-        | Node::If(_, a, b)
-        | Node::Homotopy(a, b) => (Some(Side::Expr(a)), Some(Side::Expr(b))),
+        ExprNode::Unary(_, a) | ExprNode::Binary(BinaryFunction::Pow, _, a) => (Some(RelationSide::Expr(a)), None),
+        ExprNode::Binary(_, a, b)
+        | ExprNode::Rel(_, a, b)
+        | ExprNode::EventRel(_, a, b)
+        | ExprNode::If(_, a, b)
+        | ExprNode::Homotopy(a, b) => (Some(RelationSide::Expr(a)), Some(RelationSide::Expr(b))),
         _ => (None, None),
     }
 }
 
 /// A unit as the user wrote it when the expression is a variable that declares it.
-fn named(units: &Units, side: Side, quantity: Quantity) -> String {
+fn named(units: &UnitInference, side: RelationSide, quantity: PartialUnit) -> String {
     let variable = match side {
-        Side::Var(v) => Some(v),
-        Side::Expr(e) => match units.model.exprs.node(e) {
-            Node::Var(v) | Node::Pre(v) => Some(v),
+        RelationSide::Var(v) => Some(v),
+        RelationSide::Expr(e) => match units.model.exprs.node(e) {
+            ExprNode::Var(v) | ExprNode::Pre(v) => Some(v),
             _ => None,
         },
     };
@@ -134,11 +146,17 @@ fn named(units: &Units, side: Side, quantity: Quantity) -> String {
 }
 
 /// The message, and what stands under the place.
-fn words(model: &FlatModel, relation: &Relation, mismatch: &Mismatch, left: &str, right: &str) -> (String, String) {
+fn words(
+    model: &FlatModel,
+    relation: &UnitRelation,
+    mismatch: &UnitMismatch,
+    left: &str,
+    right: &str,
+) -> (String, String) {
     let Some(part) = mismatch.part else {
         let lhs = match relation.lhs {
-            Some(Side::Var(v)) => model.variables[v.index()].name.clone(),
-            Some(Side::Expr(e)) => infer::text(model, e),
+            Some(RelationSide::Var(v)) => model.variables[v.index()].name.clone(),
+            Some(RelationSide::Expr(e)) => infer::text(model, e),
             None => String::new(),
         };
         let rhs = infer::text(model, relation.rhs);
@@ -147,27 +165,40 @@ fn words(model: &FlatModel, relation: &Relation, mismatch: &Mismatch, left: &str
     };
     let whole = infer::text(model, part);
     match model.exprs.node(part) {
-        Node::Binary(Binary::Add, ..) => (format!("`{whole}` adds {left} and {right}"), format!("{left} + {right}")),
-        Node::Binary(Binary::Sub, ..) => {
+        ExprNode::Binary(BinaryFunction::Add, ..) => {
+            (format!("`{whole}` adds {left} and {right}"), format!("{left} + {right}"))
+        }
+        ExprNode::Binary(BinaryFunction::Sub, ..) => {
             (format!("`{whole}` subtracts {right} from {left}"), format!("{left} - {right}"))
         }
-        Node::Rel(..) | Node::EventRel(..) | Node::Binary(Binary::Min | Binary::Max | Binary::Atan2, ..) => {
+        ExprNode::Rel(..)
+        | ExprNode::EventRel(..)
+        | ExprNode::Binary(BinaryFunction::Min | BinaryFunction::Max | BinaryFunction::Atan2, ..) => {
             (format!("`{whole}` compares {left} with {right}"), format!("{left} against {right}"))
         }
-        Node::Unary(..) => (format!("the argument of `{whole}` is in {left}, not a number"), format!("{left} here")),
-        Node::Binary(Binary::Pow, ..) => (format!("the exponent of `{whole}` is in {left}"), format!("{left} here")),
+        ExprNode::Unary(..) => {
+            (format!("the argument of `{whole}` is in {left}, not a number"), format!("{left} here"))
+        }
+        ExprNode::Binary(BinaryFunction::Pow, ..) => {
+            (format!("the exponent of `{whole}` is in {left}"), format!("{left} here"))
+        }
         _ => (format!("the two values of `{whole}` are in {left} and {right}"), format!("{left} or {right}")),
     }
 }
 
 /// The variables of an expression with their units, and where the unit of an undeclared one was found.
-fn terms(units: &Units, relations: &[Relation], side: Side, relation: &Relation) -> Vec<(VarId, Option<Span>, String)> {
+fn terms(
+    units: &UnitInference,
+    relations: &[UnitRelation],
+    side: RelationSide,
+    relation: &UnitRelation,
+) -> Vec<(VarId, Option<Span>, String)> {
     let model = units.model;
     let mut roots = Vec::new();
-    if let Side::Expr(e) = side {
+    if let RelationSide::Expr(e) = side {
         roots.push(e);
     }
-    if let (Some(Side::Expr(lhs)), true) = (relation.lhs, roots == [relation.rhs]) {
+    if let (Some(RelationSide::Expr(lhs)), true) = (relation.lhs, roots == [relation.rhs]) {
         roots.push(lhs);
     }
     let leaves = model.exprs.dependencies(&roots);
@@ -177,7 +208,7 @@ fn terms(units: &Units, relations: &[Relation], side: Side, relation: &Relation)
     let mut lines = Vec::new();
     for v in vars {
         let variable = &model.variables[v.index()];
-        let Measure::Known(quantity) = units.variables[v.index()] else { continue };
+        let UnitKnowledge::Known(quantity) = units.variables[v.index()] else { continue };
         let line = match (&variable.unit, units.found_in.get(&v)) {
             (Some(unit), None) => (v, None, format!("`{}` is in {unit}", variable.name)),
             (_, Some(&found)) => {
@@ -192,7 +223,7 @@ fn terms(units: &Units, relations: &[Relation], side: Side, relation: &Relation)
     lines
 }
 
-fn conversion(mismatch: &Mismatch) -> String {
+fn conversion(mismatch: &UnitMismatch) -> String {
     let (left, right) = (mismatch.left, mismatch.right);
     let shift = right.offset - left.offset;
     if shift.abs() > 1e-6 {
@@ -202,7 +233,7 @@ fn conversion(mismatch: &Mismatch) -> String {
     format!("convert one side, or declare both in the same unit: the right one is {factor} of the left one")
 }
 
-fn unreadable_units(model: &FlatModel, unreadable: &[infer::Unreadable]) -> Vec<Diagnostic> {
+fn unreadable_units(model: &FlatModel, unreadable: &[infer::UnreadableUnit]) -> Vec<Diagnostic> {
     let mut seen = FxHashSet::default();
     let mut found = Vec::new();
     for (v, error) in unreadable {
@@ -234,7 +265,7 @@ fn display_units(model: &FlatModel) -> Vec<Diagnostic> {
         if unit == display || !seen.insert((unit, display)) {
             continue;
         }
-        let (Ok(own), Ok(shown)) = (Unit::parse(unit), Unit::parse(display)) else { continue };
+        let (Ok(own), Ok(shown)) = (MeasurementUnit::parse(unit), MeasurementUnit::parse(display)) else { continue };
         if own.dimension != shown.dimension && !display.is_empty() && !unit.is_empty() {
             let message = format!("`{}` is in {unit} and cannot be displayed in {display}", variable.name);
             found.push(Diagnostic::new(Code::UnitMismatch, message).at(variable.origin.span, "declared here"));

@@ -2,7 +2,7 @@
 //! equations, and the warnings that are expected, each as code and message.
 
 use super::*;
-use crate::flat::{Equation, InstanceInfo, Origin, OriginKind, Type, Variability, Variable};
+use crate::flat::{ElementOrigin, FlatEquation, FlatVariable, InstanceInfo, OriginKind, ScalarType, Variability};
 use bramah_expr::Exprs;
 use bramah_syntax::diag::FileId;
 
@@ -11,18 +11,18 @@ fn span(at: usize) -> Span {
     Span { file: FileId(0), start: at, end: at + 1 }
 }
 
-fn origin(at: usize) -> Origin {
-    Origin { span: span(at), instance: 0, kind: OriginKind::Declared }
+fn origin(at: usize) -> ElementOrigin {
+    ElementOrigin { span: span(at), instance: 0, kind: OriginKind::Declared }
 }
 
-fn variable(name: &str, unit: &str, at: usize, pool: &mut Exprs) -> Variable {
+fn variable(name: &str, unit: &str, at: usize, pool: &mut Exprs) -> FlatVariable {
     let value = unit.strip_prefix('=').map(|text| pool.num(text.parse().expect("a number")));
-    let ty = if unit == "Integer" { Type::Integer } else { Type::Real };
+    let ty = if unit == "Integer" { ScalarType::Integer } else { ScalarType::Real };
     let declared = !matches!(unit, "?" | "Integer") && value.is_none();
-    Variable {
+    FlatVariable {
         binding: value,
         unit: declared.then(|| unit.into()),
-        ..Variable::plain(
+        ..FlatVariable::plain(
             name,
             ty,
             if value.is_some() { Variability::Parameter } else { Variability::Continuous },
@@ -42,7 +42,7 @@ fn model(declarations: &str, equations: &str) -> FlatModel {
     for (i, equation) in equations.split("; ").enumerate() {
         let (lhs, rhs) = equation.split_once(" = ").expect("an equation");
         let (lhs, rhs) = (expression(&mut model, lhs), expression(&mut model, rhs));
-        model.equations.push(Equation { lhs, rhs, origin: origin(1000 + i) });
+        model.equations.push(FlatEquation { lhs, rhs, origin: origin(1000 + i) });
     }
     model
 }
@@ -183,11 +183,11 @@ fn long_chains_without_units_are_followed() {
     }
     let vars: Vec<ExprId> = (0..).take(n + 1).map(|i| model.exprs.var(VarId(i))).collect();
     for i in 0..n {
-        model.equations.push(Equation { lhs: vars[i], rhs: vars[i + 1], origin: origin(i) });
+        model.equations.push(FlatEquation { lhs: vars[i], rhs: vars[i + 1], origin: origin(i) });
     }
     let variable = variable("F", "N", n + 1, &mut model.exprs);
     model.variables.push(variable);
     let force = model.exprs.var(VarId(u32::try_from(n + 1).expect("small")));
-    model.equations.push(Equation { lhs: vars[0], rhs: force, origin: origin(n) });
+    model.equations.push(FlatEquation { lhs: vars[0], rhs: force, origin: origin(n) });
     assert_eq!(check(&model).len(), 1);
 }

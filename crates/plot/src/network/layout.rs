@@ -10,7 +10,7 @@ use petgraph::graph::{EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
 
 use super::symbols::symbol;
-use bramah_model::network::Graph;
+use bramah_model::network::ComponentGraph;
 
 /// Columns in a row before the network turns.
 const COLUMNS: usize = 8;
@@ -28,22 +28,22 @@ pub(super) const SYMBOL: f64 = 40.0;
 
 /// The side of a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Side {
+pub(super) enum BoxSide {
     Left,
     Right,
 }
 
 /// Where a wire begins.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct WireEnd {
     pub x: f64,
     pub y: f64,
-    pub side: Side,
+    pub side: BoxSide,
 }
 
 /// A component.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Boxed {
+pub(super) struct LayoutBox {
     pub x: f64,
     pub y: f64,
     pub width: f64,
@@ -54,7 +54,7 @@ pub(super) struct Boxed {
     right: Vec<String>,
 }
 
-impl Boxed {
+impl LayoutBox {
     /// The upper left corner of the symbol.
     pub fn symbol_place(&self) -> (f64, f64) {
         let room = self.height - HEAD - 4.0;
@@ -64,22 +64,23 @@ impl Boxed {
 
 /// All boxes, by the numbers of their nodes.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Layout {
-    pub boxes: Vec<Boxed>,
+pub(super) struct DiagramLayout {
+    pub boxes: Vec<LayoutBox>,
     pub width: f64,
     pub height: f64,
 }
 
-impl Layout {
-    pub fn new(graph: &Graph) -> Self {
+impl DiagramLayout {
+    pub fn new(graph: &ComponentGraph) -> Self {
         let neighbours = neighbours(graph);
-        let mut layout = Layout { boxes: vec![Boxed::default(); graph.node_count()], ..Layout::default() };
+        let mut layout =
+            DiagramLayout { boxes: vec![LayoutBox::default(); graph.node_count()], ..DiagramLayout::default() };
         for node in graph.node_indices() {
             let component = &graph[node];
             let classes = std::iter::once(&component.class).chain(&component.bases).map(String::as_str);
             let symbol = symbol(classes);
             layout.boxes[node.index()] =
-                Boxed { width: box_width(component, symbol.is_some()), symbol, ..Boxed::default() };
+                LayoutBox { width: box_width(component, symbol.is_some()), symbol, ..LayoutBox::default() };
         }
         let mut top = MARGIN;
         for part in parts(&neighbours) {
@@ -98,34 +99,34 @@ impl Layout {
     }
 
     /// Where a port is for a wire to the box `other`: a port with wires to both sides stands on both.
-    pub fn end(&self, node: usize, port: &str, other: usize) -> Place {
+    pub fn end(&self, node: usize, port: &str, other: usize) -> WireEnd {
         let wished = self.side_towards(node, other);
         let places = self.places(node, port);
         let found = places.iter().find(|p| p.side == wished).or(places.first());
         let b = &self.boxes[node];
-        found.copied().unwrap_or(Place { x: b.x, y: b.y, side: Side::Left })
+        found.copied().unwrap_or(WireEnd { x: b.x, y: b.y, side: BoxSide::Left })
     }
 
     /// All places where a port is drawn.
-    pub fn places(&self, node: usize, port: &str) -> Vec<Place> {
+    pub fn places(&self, node: usize, port: &str) -> Vec<WireEnd> {
         let b = &self.boxes[node];
         let y = |i: usize| b.y + HEAD + PORT * (i as f64 + 0.5);
-        let left = b.left.iter().position(|p| p == port).map(|i| Place { x: b.x, y: y(i), side: Side::Left });
+        let left = b.left.iter().position(|p| p == port).map(|i| WireEnd { x: b.x, y: y(i), side: BoxSide::Left });
         let right = b.right.iter().position(|p| p == port);
-        let right = right.map(|i| Place { x: b.x + b.width, y: y(i), side: Side::Right });
+        let right = right.map(|i| WireEnd { x: b.x + b.width, y: y(i), side: BoxSide::Right });
         left.into_iter().chain(right).collect()
     }
 
     /// Boxes of one column are joined on their right.
-    fn side_towards(&self, node: usize, other: usize) -> Side {
-        let middle = |b: &Boxed| b.x + b.width / 2.0;
+    fn side_towards(&self, node: usize, other: usize) -> BoxSide {
+        let middle = |b: &LayoutBox| b.x + b.width / 2.0;
         let away = middle(&self.boxes[other]) - middle(&self.boxes[node]);
-        if away < -1.0 { Side::Left } else { Side::Right }
+        if away < -1.0 { BoxSide::Left } else { BoxSide::Right }
     }
 
     /// Columns from left to right, or from right to left where the network has turned.
     fn place_x(&mut self, row: &[Vec<usize>], turned: bool) {
-        let width = |column: &[usize], boxes: &[Boxed]| column.iter().map(|&n| boxes[n].width).fold(0.0, f64::max);
+        let width = |column: &[usize], boxes: &[LayoutBox]| column.iter().map(|&n| boxes[n].width).fold(0.0, f64::max);
         let widths: Vec<f64> = row.iter().map(|c| width(c, &self.boxes)).collect();
         let full = COLUMNS as f64 * 150.0 + (COLUMNS - 1) as f64 * GAP_X;
         let total = widths.iter().sum::<f64>() + GAP_X * (widths.len() - 1) as f64;
@@ -142,17 +143,17 @@ impl Layout {
     }
 
     /// A port looks to the sides where its wires go.
-    fn choose_sides(&mut self, graph: &Graph, part: &[usize]) {
+    fn choose_sides(&mut self, graph: &ComponentGraph, part: &[usize]) {
         for &node in part {
             let index = NodeIndex::new(node);
             for port in &graph[index].ports {
                 let others = graph.edges(index).filter_map(|edge| other_end(graph, edge.id(), index, port));
-                let sides: Vec<Side> = others.map(|other| self.side_towards(node, other.index())).collect();
+                let sides: Vec<BoxSide> = others.map(|other| self.side_towards(node, other.index())).collect();
                 let b = &mut self.boxes[node];
-                if sides.contains(&Side::Left) {
+                if sides.contains(&BoxSide::Left) {
                     b.left.push(port.clone());
                 }
-                if sides.contains(&Side::Right) || sides.is_empty() {
+                if sides.contains(&BoxSide::Right) || sides.is_empty() {
                     b.right.push(port.clone());
                 }
             }
@@ -164,7 +165,7 @@ impl Layout {
 
     /// Stacks the columns of a row, each centred and then drawn towards its neighbours; returns where the next begins.
     fn place_y(&mut self, row: &[Vec<usize>], top: f64, neighbours: &[Vec<usize>]) -> f64 {
-        let height = |layout: &Layout, column: &[usize]| -> f64 {
+        let height = |layout: &DiagramLayout, column: &[usize]| -> f64 {
             column.iter().map(|&n| layout.boxes[n].height + GAP_Y).sum::<f64>() - GAP_Y
         };
         let tallest = row.iter().map(|c| height(self, c)).fold(0.0, f64::max);
@@ -186,7 +187,7 @@ impl Layout {
 
     /// Moves each box of a column towards the mean of its neighbours in the row, keeping order and distances.
     fn settle(&mut self, column: &[usize], (top, bottom): (f64, f64), members: &[usize], neighbours: &[Vec<usize>]) {
-        let middle = |b: &Boxed| b.y + b.height / 2.0;
+        let middle = |b: &LayoutBox| b.y + b.height / 2.0;
         let mut y = top;
         let mut room: f64 = column.iter().map(|&n| self.boxes[n].height + GAP_Y).sum();
         for &node in column {
@@ -205,7 +206,7 @@ impl Layout {
 }
 
 /// Where the wire goes that leaves `node` at `port`, if it does.
-fn other_end(graph: &Graph, edge: EdgeIndex, node: NodeIndex, port: &str) -> Option<NodeIndex> {
+fn other_end(graph: &ComponentGraph, edge: EdgeIndex, node: NodeIndex, port: &str) -> Option<NodeIndex> {
     let (a, b) = graph.edge_endpoints(edge)?;
     let wire = &graph[edge];
     if a == node && wire.from == port {
@@ -226,7 +227,7 @@ fn box_width(component: &bramah_model::network::ComponentBox, symbol: bool) -> f
 }
 
 /// Each node's neighbours, without itself, in the order of their numbers.
-fn neighbours(graph: &Graph) -> Vec<Vec<usize>> {
+fn neighbours(graph: &ComponentGraph) -> Vec<Vec<usize>> {
     let mut all = vec![Vec::new(); graph.node_count()];
     for edge in graph.edge_references() {
         let (a, b) = (edge.source().index(), edge.target().index());

@@ -12,15 +12,15 @@ use petgraph::visit::EdgeRef;
 
 use super::figure::colour;
 use super::svg::{begin, escape};
-use bramah_model::network::{ComponentBox, Graph};
-use layout::{Layout, Side};
+use bramah_model::network::{ComponentBox, ComponentGraph};
+use layout::{BoxSide, DiagramLayout};
 
 /// The colour of the hottest mark.
 const HOT: [f64; 3] = [213.0, 94.0, 0.0];
 
 /// Something at a port or in a component that is shown as heat.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Mark {
+pub struct HeatMark {
     /// Full name of a port or of anything in a component.
     pub name: String,
     /// From 0, nothing, to 1.
@@ -30,14 +30,14 @@ pub struct Mark {
 }
 
 /// Draws the components and connections of a model's top level.
-pub fn write(graph: &Graph, title: &str) -> String {
+pub fn write(graph: &ComponentGraph, title: &str) -> String {
     write_marked(graph, title, &[])
 }
 
 /// The same with marks: ports at the top level get a coloured dot and coloured connections, what lies deeper tints its
 /// component.
-pub fn write_marked(graph: &Graph, title: &str, marks: &[Mark]) -> String {
-    let layout = Layout::new(graph);
+pub fn write_marked(graph: &ComponentGraph, title: &str, marks: &[HeatMark]) -> String {
+    let layout = DiagramLayout::new(graph);
     let connectors: IndexSet<&str> = graph.edge_weights().map(|w| w.connector.as_str()).collect();
     let legend = 24.0 * connectors.len().div_ceil(4) as f64;
     let (width, height) = (layout.width.max(420.0), layout.height + 56.0 + legend);
@@ -85,13 +85,13 @@ fn short(class: &str) -> &str {
     class.rsplit('.').next().unwrap_or(class)
 }
 
-fn draw_wire(out: &mut String, layout: &Layout, ends: [(usize, &str); 2], (stroke, width): (&str, f64)) {
+fn draw_wire(out: &mut String, layout: &DiagramLayout, ends: [(usize, &str); 2], (stroke, width): (&str, f64)) {
     let [(first, _), (second, _)] = ends;
     let a = layout.end(first, ends[0].1, second);
     let b = layout.end(second, ends[1].1, first);
-    let reach = |p: &layout::Place| {
+    let reach = |p: &layout::WireEnd| {
         let distance = ((a.x - b.x).abs() * 0.45).clamp(28.0, 120.0) + 0.06 * (a.y - b.y).abs().min(300.0);
-        if p.side == Side::Left { p.x - distance } else { p.x + distance }
+        if p.side == BoxSide::Left { p.x - distance } else { p.x + distance }
     };
     let _ = writeln!(
         out,
@@ -108,8 +108,8 @@ fn draw_wire(out: &mut String, layout: &Layout, ends: [(usize, &str); 2], (strok
 }
 
 /// The hottest mark of a port, or with an empty port of what lies deeper in a component.
-fn hottest<'a>(marks: &'a [Mark], component: &ComponentBox, port: &str) -> Option<&'a Mark> {
-    let at = |m: &&Mark| {
+fn hottest<'a>(marks: &'a [HeatMark], component: &ComponentBox, port: &str) -> Option<&'a HeatMark> {
+    let at = |m: &&HeatMark| {
         let (name, rest) = m.name.split_once('.').unwrap_or((&m.name, ""));
         let own = name == component.name;
         if port.is_empty() { own && !component.ports.iter().any(|p| p == rest) } else { own && rest == port }
@@ -124,7 +124,7 @@ fn warm(heat: f64) -> String {
     format!("#{:02x}{:02x}{:02x}", r as u8, g as u8, b as u8)
 }
 
-fn draw_box(out: &mut String, layout: &Layout, node: usize, graph: &Graph, marks: &[Mark]) {
+fn draw_box(out: &mut String, layout: &DiagramLayout, node: usize, graph: &ComponentGraph, marks: &[HeatMark]) {
     let component = &graph[petgraph::graph::NodeIndex::new(node)];
     let place = &layout.boxes[node];
     let middle = place.x + place.width / 2.0;
@@ -156,7 +156,7 @@ fn draw_box(out: &mut String, layout: &Layout, node: usize, graph: &Graph, marks
     }
     let places = component.ports.iter().flat_map(|port| layout.places(node, port).into_iter().map(move |p| (port, p)));
     for (port, p) in places {
-        let (x, anchor) = if p.side == Side::Left { (p.x + 7.0, "start") } else { (p.x - 7.0, "end") };
+        let (x, anchor) = if p.side == BoxSide::Left { (p.x + 7.0, "start") } else { (p.x - 7.0, "end") };
         let mark = hottest(marks, component, port).filter(|_| !port.is_empty());
         let radius = mark.map_or(3.2, |m| 3.2 + 4.0 * m.heat);
         let fill = mark.map_or_else(|| "#ffffff".to_string(), |m| warm(m.heat));
@@ -178,10 +178,10 @@ fn draw_box(out: &mut String, layout: &Layout, node: usize, graph: &Graph, marks
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bramah_model::network::Wire;
+    use bramah_model::network::ComponentEdge;
 
-    fn graph(names: &[&str], wires: &[(usize, &str, usize, &str)]) -> Graph {
-        let mut graph = Graph::default();
+    fn graph(names: &[&str], wires: &[(usize, &str, usize, &str)]) -> ComponentGraph {
+        let mut graph = ComponentGraph::default();
         let nodes: Vec<_> = names
             .iter()
             .map(|n| {
@@ -200,14 +200,14 @@ mod tests {
                     ports.push(port.into());
                 }
             }
-            let wire = Wire { from: from.into(), to: to.into(), connector: "Lib.Port".into() };
+            let wire = ComponentEdge { from: from.into(), to: to.into(), connector: "Lib.Port".into() };
             graph.add_edge(nodes[a], nodes[b], wire);
         }
         graph
     }
 
     /// No two boxes may cover each other.
-    fn assert_apart(layout: &Layout) {
+    fn assert_apart(layout: &DiagramLayout) {
         for (i, a) in layout.boxes.iter().enumerate() {
             for b in &layout.boxes[..i] {
                 let apart =
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn marks_are_coloured() {
         let g = graph(&["tank", "pump"], &[(0, "port", 1, "b")]);
-        let mark = |name: &str, heat| Mark { name: name.into(), heat, note: format!("at <{name}>") };
+        let mark = |name: &str, heat| HeatMark { name: name.into(), heat, note: format!("at <{name}>") };
         let drawn = write_marked(&g, "", &[mark("tank.port", 1.0), mark("pump.b", 1.0), mark("pump.gap.x", 0.5)]);
         assert_eq!(drawn.matches(&warm(1.0)).count(), 3, "two ports and the connection: {drawn}");
         assert!(drawn.contains(&warm(0.25)) && drawn.contains("<title>at &lt;tank.port&gt;</title>"));
@@ -242,8 +242,8 @@ mod tests {
         let mesh: Vec<_> = (0..49).flat_map(|i| [(i, "b", i + 1, "a"), (i, "c", (i * 7) % 50, "d")]).collect();
         let parts: Vec<_> = (0..25).map(|i| (2 * i, "b", 2 * i + 1, "a")).collect();
         for wires in [&chain, &star, &mesh, &parts, &vec![]] {
-            assert_apart(&Layout::new(&graph(&names, wires)));
+            assert_apart(&DiagramLayout::new(&graph(&names, wires)));
         }
-        assert_apart(&Layout::new(&graph(&[], &[])));
+        assert_apart(&DiagramLayout::new(&graph(&[], &[])));
     }
 }

@@ -28,7 +28,7 @@ mod tests {
         for file in SYMBOLS.files() {
             let class = file.path().file_stem().expect("a name").to_string_lossy().into_owned();
             let source = format!("components/{}.mo", class.replace('.', "/"));
-            let known = bramah_model::shipped::Shipped.read(std::path::Path::new(&source));
+            let known = bramah_model::shipped::ShippedWorld.read(std::path::Path::new(&source));
             assert!(known.is_ok(), "{class} is no class of the library");
             let drawn = symbol([class.as_str()]).unwrap_or_else(|| panic!("{class} cannot be read"));
             let element = |text: &str| ["g", "path", "circle", "rect", "/g"].iter().any(|e| text.starts_with(e));

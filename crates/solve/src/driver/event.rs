@@ -1,25 +1,29 @@
 //! What happens at an event: causes, iteration, assertions, and how the integrator goes on.
 
-use super::{Cause, Driver, Flow, Stop};
-use crate::events::{EventFailure, Outcome};
-use crate::ida::Failure;
-use crate::lower::Layout;
-use crate::model::Model;
+use super::{Driver, EarlyStop, EventCause, StopResult};
+use crate::events::{EventFailure, EventOutcome};
+use crate::ida::IdaFailure;
+use crate::lower::ValueLayout;
+use crate::model::IntegrationModel;
 use crate::modes::same_time;
 use crate::report;
 use crate::schedule::next_time_crossing;
 use crate::settings::End;
-use bramah_model::structure::ActionKind;
+use bramah_model::structure::EventActionKind;
 use bramah_syntax::diag::{Code, Diagnostic};
 
 impl<'a> Driver<'a, '_> {
     /// Runs the event iteration and puts root functions on the right side.
-    pub(super) fn iterate(&mut self, model: &mut Model<'a>, cause: Cause) -> Result<Outcome, Stop> {
+    pub(super) fn iterate(
+        &mut self,
+        model: &mut IntegrationModel<'a>,
+        cause: EventCause,
+    ) -> Result<EventOutcome, EarlyStop> {
         let (system, t) = (self.system, self.t);
         let mut outcome =
             self.events.iterate(system, &self.scales, &self.modes, &mut model.values).map_err(|failure| {
                 let when = match cause {
-                    Cause::Start => "at the start".to_string(),
+                    EventCause::Start => "at the start".to_string(),
                     _ => format!("at the event at time {} s", report::number(t)),
                 };
                 let diagnostic = match failure {
@@ -32,7 +36,7 @@ impl<'a> Driver<'a, '_> {
                     Code::NonFinite => End::NonFinite,
                     _ => End::StepTooSmall,
                 };
-                Stop::new(end, diagnostic)
+                EarlyStop::new(end, diagnostic)
             })?;
         self.keep_open();
         outcome.refused = self.modes.refused(&model.values);
@@ -61,21 +65,21 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Assertions and `terminate` of an event whose rows are out.
-    pub(super) fn judge(&mut self, model: &mut Model<'a>, outcome: &Outcome) -> Flow {
+    pub(super) fn judge(&mut self, model: &mut IntegrationModel<'a>, outcome: &EventOutcome) -> StopResult {
         for (action, text) in &outcome.failed {
-            if let ActionKind::Assert(assert) = &self.system.dae.actions[*action].kind {
+            if let EventActionKind::Assert(assert) = &self.system.dae.actions[*action].kind {
                 let first = self.reported.first_action(*action);
                 self.assertion(assert.warning, first, assert.origin, text)?;
             }
         }
         self.check_asserts(model)?;
         match &outcome.terminate {
-            Some(message) => Err(Stop { end: End::Terminated(message.clone()), diagnostics: Vec::new() }),
+            Some(message) => Err(EarlyStop { end: End::Terminated(message.clone()), diagnostics: Vec::new() }),
             None => Ok(()),
         }
     }
 
-    pub(super) fn check_asserts(&mut self, model: &mut Model<'a>) -> Flow {
+    pub(super) fn check_asserts(&mut self, model: &mut IntegrationModel<'a>) -> StopResult {
         let system = self.system;
         if system.dae.asserts.is_empty() {
             return Ok(());
@@ -95,14 +99,14 @@ impl<'a> Driver<'a, '_> {
         &mut self,
         warning: bool,
         first: bool,
-        origin: bramah_model::flat::Origin,
+        origin: bramah_model::flat::ElementOrigin,
         text: &str,
-    ) -> Flow {
+    ) -> StopResult {
         let code = if warning { Code::AssertionWarning } else { Code::AssertionFailed };
         let text = format!("{text} (at time {} s)", report::number(self.t));
         let diagnostic = report::at_origin(&self.system.dae, code, text, origin, "does not hold").advised();
         if !warning {
-            return Err(Stop::new(End::Assertion, diagnostic));
+            return Err(EarlyStop::new(End::Assertion, diagnostic));
         }
         if first {
             self.diagnostics.push(diagnostic);
@@ -111,7 +115,7 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// An event where the integrator stands; what has crossed is noted already.
-    pub(super) fn event(&mut self, cause: Cause) -> Flow {
+    pub(super) fn event(&mut self, cause: EventCause) -> StopResult {
         self.statistics.events += 1;
         let crossing = self.first_crossing(cause);
         let t = self.t;
@@ -139,7 +143,7 @@ impl<'a> Driver<'a, '_> {
             if !outcome.reinitialised
                 && let Some(jump) = driver.continuity.jump(&model.values)
             {
-                return Err(Stop::new(End::StepTooSmall, report::jump(driver.system, t, &jump)));
+                return Err(EarlyStop::new(End::StepTooSmall, report::jump(driver.system, t, &jump)));
             }
             driver.restart.gather(driver.system, &mut model.values);
             driver.remember_event(model, cause, &outcome, &before);
@@ -152,7 +156,7 @@ impl<'a> Driver<'a, '_> {
             Ok(outcome)
         })?;
         self.with_model(|driver, model, _, _| driver.judge(model, &outcome))?;
-        if cause != Cause::Terminal {
+        if cause != EventCause::Terminal {
             self.go_on(cause, &outcome)?;
             let span = self.settings.stop_time - self.settings.start_time;
             let upwards = self.roots.iter().find(|d| **d != 0).is_some_and(|d| *d > 0);
@@ -163,7 +167,7 @@ impl<'a> Driver<'a, '_> {
                 self.accumulation.stands(distance);
             }
             if self.chatter.note(t, crossing) {
-                return Err(Stop::new(End::Chattering, self.chatter.report(self.system, t)));
+                return Err(EarlyStop::new(End::Chattering, self.chatter.report(self.system, t)));
             }
         }
         self.look_outside()
@@ -189,8 +193,8 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// The first crossing among those that cause the event.
-    fn first_crossing(&mut self, cause: Cause) -> Option<u32> {
-        if cause != Cause::Root {
+    fn first_crossing(&mut self, cause: EventCause) -> Option<u32> {
+        if cause != EventCause::Root {
             self.roots.clear();
         }
         let first = self.roots.iter().position(|&d| d != 0)?;
@@ -198,17 +202,17 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// What the event's cause changes at once.
-    pub(super) fn prepare_event(&mut self, model: &mut Model<'a>, cause: Cause) {
+    pub(super) fn prepare_event(&mut self, model: &mut IntegrationModel<'a>, cause: EventCause) {
         let t = self.t;
-        let Model { values, playback, roots, .. } = model;
+        let IntegrationModel { values, playback, roots, .. } = model;
         match cause {
-            Cause::Root => {
+            EventCause::Root => {
                 for (function, &direction) in self.roots.iter().enumerate().filter(|(_, d)| **d != 0) {
                     self.modes.force(self.system, roots.crossing(function), direction, values);
                 }
             }
-            Cause::Terminal => values[Layout::TERMINAL] = 1.0,
-            Cause::Time => {
+            EventCause::Terminal => values[ValueLayout::TERMINAL] = 1.0,
+            EventCause::Time => {
                 playback.seek(t, values);
                 let events = &self.events;
                 self.clocks.ring(t, |i| events.raise(i, values));
@@ -216,12 +220,12 @@ impl<'a> Driver<'a, '_> {
                     values[slot] = value;
                 }
             }
-            Cause::Start => {}
+            EventCause::Start => {}
         }
     }
 
     /// Continues after an event: with the integrator's past where it is still true, else afresh.
-    pub(super) fn go_on(&mut self, cause: Cause, outcome: &Outcome) -> Flow {
+    pub(super) fn go_on(&mut self, cause: EventCause, outcome: &EventOutcome) -> StopResult {
         let t = self.t;
         let next = self.next_stop();
         let open = self.events.kept().is_some();
@@ -231,7 +235,7 @@ impl<'a> Driver<'a, '_> {
         let serves = !outcome.reinitialised
             && !outcome.refused
             && match cause {
-                Cause::Root => self.restart.past_serves_ahead(ida, t, outcome.changed),
+                EventCause::Root => self.restart.past_serves_ahead(ida, t, outcome.changed),
                 _ => self.restart.past_serves(ida, t, next),
             };
         if serves && self.tangents_go_on() {
@@ -239,15 +243,15 @@ impl<'a> Driver<'a, '_> {
         }
         self.restart.remember_step(self.ida.as_ref().expect("made before the first step"));
         self.statistics.restarts += 1;
-        self.first_step(cause).then_some(()).ok_or_else(|| self.refused(&Failure::Code(0)))
+        self.first_step(cause).then_some(()).ok_or_else(|| self.refused(&IdaFailure::Code(0)))
     }
 
     /// Restarts from the gathered values with a first step of sensible length; false when IDA refuses.
-    pub(super) fn first_step(&mut self, cause: Cause) -> bool {
+    pub(super) fn first_step(&mut self, cause: EventCause) -> bool {
         let t = self.t;
         let room = self.next_stop() - t;
         let ida = self.ida.as_mut().expect("made before the first step");
-        let (start, root) = (cause == Cause::Start, cause == Cause::Root);
+        let (start, root) = (cause == EventCause::Start, cause == EventCause::Root);
         if std::mem::take(&mut self.tests_states_only) && ida.leave_out(&[]).is_err() {
             return false;
         }

@@ -1,20 +1,20 @@
 //! A model whose integrator is the caller's: time, states and inputs come from outside, derivatives and the functions that
 //! watch for events go there. Between events the modes are held; what an event does is what it does in any run.
 
-use super::{Cause, Driver, Stop, prepare, stop_at_start};
-use crate::algebraic::Algebraic;
-use crate::ida::Equations;
-use crate::lower::{Layout, System};
-use crate::model::Model;
+use super::{Driver, EarlyStop, EventCause, prepare, stop_at_start};
+use crate::algebraic::AlgebraicSolver;
+use crate::ida::DaeEquations;
+use crate::lower::{ExecutableSystem, ValueLayout};
+use crate::model::IntegrationModel;
 use crate::modes::{RootFunctions, same_time};
 use crate::report;
 use crate::settings::End;
-use crate::{Input, Settings};
+use crate::{RecordedInput, Settings};
 use bramah_syntax::diag::{Code, Diagnostic};
 
 /// What came of an event.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Happened {
+pub struct ExchangeEventResult {
     /// States have new values.
     pub states_changed: bool,
     /// The next event of known time (s).
@@ -24,10 +24,10 @@ pub struct Happened {
 }
 
 /// A model under way.
-pub struct Exchange<'a> {
+pub struct ExchangeDriver<'a> {
     driver: Driver<'a, 'a>,
-    model: Model<'a>,
-    solver: Algebraic,
+    model: IntegrationModel<'a>,
+    solver: AlgebraicSolver,
     y: Vec<f64>,
     yp: Vec<f64>,
     /// The functions that watch for events, behind the last one.
@@ -41,7 +41,7 @@ pub struct Exchange<'a> {
 }
 
 /// Why a system cannot be integrated by others; `None` where it can.
-pub fn refuses(system: &System) -> Option<&'static str> {
+pub fn refuses(system: &ExecutableSystem) -> Option<&'static str> {
     let dae = &system.dae;
     match () {
         () if !dae.delays.is_empty() => Some("a `delay` needs the steps of the integrator"),
@@ -52,30 +52,34 @@ pub fn refuses(system: &System) -> Option<&'static str> {
 }
 
 /// How many functions watch for events of a system.
-pub fn indicators(system: &System) -> usize {
+pub fn indicators(system: &ExecutableSystem) -> usize {
     RootFunctions::new(system).len()
 }
 
-impl<'a> Exchange<'a> {
+impl<'a> ExchangeDriver<'a> {
     /// At the start, with the event iteration done.
     ///
     /// # Errors
     /// As a run that ends there.
-    pub fn new(system: &'a System, settings: &'a Settings, inputs: &[Input]) -> Result<Self, Stop> {
+    pub fn new(
+        system: &'a ExecutableSystem,
+        settings: &'a Settings,
+        inputs: &[RecordedInput],
+    ) -> Result<Self, EarlyStop> {
         let (mut driver, mut model, solved) = prepare(system, settings, inputs, None, None, None);
         solved.map_err(|d| stop_at_start(d).with_troubles(system))?;
         driver.begin(&mut model, false)?;
         let n = system.columns.len();
-        let solver = Algebraic::with_rates(system, driver.restart.nominal(), settings.tolerance);
+        let solver = AlgebraicSolver::with_rates(system, driver.restart.nominal(), settings.tolerance);
         let roots = model.roots.len();
         let (sides, now) = (vec![0.0; roots], vec![0.0; roots]);
         let (y, yp, known) = (vec![0.0; n], vec![0.0; n], (0.0, Vec::new(), Vec::new()));
-        let mut exchange = Exchange { driver, model, solver, y, yp, sides, now, fits: false, known };
+        let mut exchange = ExchangeDriver { driver, model, solver, y, yp, sides, now, fits: false, known };
         exchange.settle();
         Ok(exchange)
     }
 
-    fn system(&self) -> &'a System {
+    fn system(&self) -> &'a ExecutableSystem {
         self.driver.system
     }
 
@@ -133,12 +137,12 @@ impl<'a> Exchange<'a> {
     }
 
     /// Solves for derivatives and algebraic unknowns.
-    fn fit(&mut self) -> Result<(), Stop> {
+    fn fit(&mut self) -> Result<(), EarlyStop> {
         if self.fits {
             return Ok(());
         }
         let t = self.driver.t;
-        self.model.values[Layout::TIME] = t;
+        self.model.values[ValueLayout::TIME] = t;
         if self.y.is_empty() || self.solve(t, self.y.clone()) || self.approach(t) {
             self.remember();
         } else if !self.across(t) {
@@ -190,7 +194,7 @@ impl<'a> Exchange<'a> {
         let system = self.system();
         let Driver { events, scales, modes, restart, .. } = &mut self.driver;
         let mut values = self.model.values.clone();
-        values[Layout::TIME] = t;
+        values[ValueLayout::TIME] = t;
         for (c, y) in system.columns.iter().zip(&self.y).filter(|(c, _)| c.is_state()) {
             values[system.layout.var(c.variable)] = *y;
         }
@@ -206,7 +210,7 @@ impl<'a> Exchange<'a> {
         true
     }
 
-    fn unsolved(&mut self) -> Stop {
+    fn unsolved(&mut self) -> EarlyStop {
         let (system, t) = (self.system(), self.driver.t);
         self.model.observe(t, &self.y, &self.yp);
         let diagnostic = match report::find_trap(system, &self.model.values) {
@@ -216,14 +220,14 @@ impl<'a> Exchange<'a> {
                 Diagnostic::new(Code::StepTooSmall, text).help("a shorter step of the integrator may help")
             }
         };
-        Stop::new(End::StepTooSmall, diagnostic).with_troubles(system)
+        EarlyStop::new(End::StepTooSmall, diagnostic).with_troubles(system)
     }
 
     /// The derivatives of the states.
     ///
     /// # Errors
     /// The equations have no solution there.
-    pub fn derivatives(&mut self) -> Result<Vec<f64>, Stop> {
+    pub fn derivatives(&mut self) -> Result<Vec<f64>, EarlyStop> {
         self.fit()?;
         Ok(self.columns().map(|j| self.yp[j]).collect())
     }
@@ -232,7 +236,7 @@ impl<'a> Exchange<'a> {
     ///
     /// # Errors
     /// The equations have no solution there.
-    pub fn indicators(&mut self) -> Result<&[f64], Stop> {
+    pub fn indicators(&mut self) -> Result<&[f64], EarlyStop> {
         self.fit()?;
         self.model.crossings(self.driver.t, &self.y, &self.yp, &mut self.now);
         Ok(&self.now)
@@ -247,7 +251,7 @@ impl<'a> Exchange<'a> {
     ///
     /// # Errors
     /// The equations have no solution there.
-    pub fn value(&mut self, slot: usize) -> Result<f64, Stop> {
+    pub fn value(&mut self, slot: usize) -> Result<f64, EarlyStop> {
         self.fit()?;
         Ok(self.model.values[slot])
     }
@@ -257,7 +261,7 @@ impl<'a> Exchange<'a> {
     ///
     /// # Errors
     /// As a run that ends there.
-    pub fn event(&mut self) -> Result<Happened, Stop> {
+    pub fn event(&mut self) -> Result<ExchangeEventResult, EarlyStop> {
         self.indicators()?;
         let t = self.driver.t;
         let crossed = |(before, now): (&f64, &f64)| match (*before > 0.0, *now > 0.0) {
@@ -267,26 +271,30 @@ impl<'a> Exchange<'a> {
         };
         self.driver.roots = self.sides.iter().zip(&self.now).map(crossed).collect();
         let root = self.driver.roots.iter().any(|d| *d != 0);
-        let cause = if root { Cause::Root } else { Cause::Time };
+        let cause = if root { EventCause::Root } else { EventCause::Time };
         self.driver.statistics.events += 1;
         let padded = padded(&self.y);
         self.driver.restart.before(self.driver.system, &mut self.model.values, &padded);
         if root {
-            self.driver.prepare_event(&mut self.model, Cause::Root);
+            self.driver.prepare_event(&mut self.model, EventCause::Root);
         }
         let due = self.next();
         if due <= t || same_time(due, t) {
-            self.driver.prepare_event(&mut self.model, Cause::Time);
+            self.driver.prepare_event(&mut self.model, EventCause::Time);
         }
         let outcome = self.driver.iterate(&mut self.model, cause)?;
         self.settle();
         let terminated = match self.driver.judge(&mut self.model, &outcome) {
             Ok(()) => None,
-            Err(Stop { end: End::Terminated(message), .. }) => Some(message),
+            Err(EarlyStop { end: End::Terminated(message), .. }) => Some(message),
             Err(stop) => return Err(stop.with_troubles(self.system())),
         };
         let next = self.next();
-        Ok(Happened { states_changed: outcome.reinitialised, next: next.is_finite().then_some(next), terminated })
+        Ok(ExchangeEventResult {
+            states_changed: outcome.reinitialised,
+            next: next.is_finite().then_some(next),
+            terminated,
+        })
     }
 
     fn next(&self) -> f64 {

@@ -1,14 +1,14 @@
 //! Why a run stops early, in words.
 
-use super::{Driver, Stop};
-use crate::ida::{Equations, Evaluation, Failure};
-use crate::model::Model;
+use super::{Driver, EarlyStop};
+use crate::ida::{DaeEquations, EvaluationStatus, IdaFailure};
+use crate::model::IntegrationModel;
 use crate::report;
 use crate::settings::End;
 use bramah_syntax::diag::{Code, Diagnostic};
 
 impl<'a> Driver<'a, '_> {
-    pub(super) fn non_finite_row(&self, model: &Model<'a>) -> Stop {
+    pub(super) fn non_finite_row(&self, model: &IntegrationModel<'a>) -> EarlyStop {
         let trap = report::find_trap(self.system, &model.values);
         let mut diagnostic = report::non_finite(self.system, self.t, trap);
         if let Some(i) = self.row.iter().position(|v| !v.is_finite()) {
@@ -18,23 +18,23 @@ impl<'a> Driver<'a, '_> {
             let what = if i < wanted.len() { "" } else { "a derivative of " };
             diagnostic = diagnostic.note(format!("{what}`{}` is {} then", variable.name, self.row[i]));
         }
-        Stop::new(End::NonFinite, diagnostic)
+        EarlyStop::new(End::NonFinite, diagnostic)
     }
 
-    pub(super) fn interrupted(&self) -> Stop {
+    pub(super) fn interrupted(&self) -> EarlyStop {
         let text = format!("interrupted at time {} s", report::number(self.t));
-        Stop::new(End::Interrupted, Diagnostic::new(Code::Interrupted, text))
+        EarlyStop::new(End::Interrupted, Diagnostic::new(Code::Interrupted, text))
     }
 
-    pub(super) fn refused(&self, failure: &Failure) -> Stop {
+    pub(super) fn refused(&self, failure: &IdaFailure) -> EarlyStop {
         let text = format!("the integrator refused to start at time {} s: {failure:?}", report::number(self.t));
-        Stop::new(End::StepTooSmall, Diagnostic::new(Code::StepTooSmall, text))
+        EarlyStop::new(End::StepTooSmall, Diagnostic::new(Code::StepTooSmall, text))
     }
 
     /// What IDA's failure means for the user.
-    pub(super) fn failed(&mut self, failure: Failure) -> Stop {
+    pub(super) fn failed(&mut self, failure: IdaFailure) -> EarlyStop {
         let (system, t) = (self.system, self.t);
-        if let Failure::Panic(text) = failure {
+        if let IdaFailure::Panic(text) = failure {
             std::panic::resume_unwind(Box::new(text));
         }
         // what was reached is kept
@@ -46,7 +46,7 @@ impl<'a> Driver<'a, '_> {
         if let Err(stop) = reached {
             return stop;
         }
-        if failure == Failure::NonFinite {
+        if failure == IdaFailure::NonFinite {
             return self.non_finite(t);
         }
         let ida = self.ida();
@@ -55,18 +55,18 @@ impl<'a> Driver<'a, '_> {
         let (h, y) = (ida.step_lengths().0, ida.y().to_vec());
         errors.truncate(system.columns.len());
         let why = match failure {
-            Failure::ErrorTest => "the error test fails however small the step".to_string(),
-            Failure::Convergence => "the equations cannot be solved for a step".to_string(),
-            Failure::Singular(Some(s)) if s.column < system.columns.len() => {
+            IdaFailure::ErrorTest => "the error test fails however small the step".to_string(),
+            IdaFailure::Convergence => "the equations cannot be solved for a step".to_string(),
+            IdaFailure::Singular(Some(s)) if s.column < system.columns.len() => {
                 let v = system.columns[s.column].variable;
                 format!("the equations do not determine `{}` there", system.dae.variables[v.index()].name)
             }
-            Failure::Singular(_) => "the equations became singular".to_string(),
-            Failure::TooMuchAccuracy => "the tolerance is finer than numbers of 64 bits allow".to_string(),
+            IdaFailure::Singular(_) => "the equations became singular".to_string(),
+            IdaFailure::TooMuchAccuracy => "the tolerance is finer than numbers of 64 bits allow".to_string(),
             other => format!("{other:?}"),
         };
         let collapse = report::step_collapse(system, t, h, &why, &errors, &y);
-        Stop::new(
+        EarlyStop::new(
             End::StepTooSmall,
             match self.idle_equation(t, &y) {
                 Some(equation) => report::idle_equation(system, collapse, equation),
@@ -85,8 +85,8 @@ impl<'a> Driver<'a, '_> {
         let model = self.ida().equations();
         let mut still = vec![0.0; pattern.rowidx.len()];
         let mut moving = still.clone();
-        let done = model.jacobian(t, 0.0, y, &yp, &mut still) == Evaluation::Done
-            && model.jacobian(t, 1.0, y, &yp, &mut moving) == Evaluation::Done;
+        let done = model.jacobian(t, 0.0, y, &yp, &mut still) == EvaluationStatus::Done
+            && model.jacobian(t, 1.0, y, &yp, &mut moving) == EvaluationStatus::Done;
         let mut busy = vec![!done; n];
         for (j, column) in system.columns.iter().enumerate() {
             for k in pattern.colptr[j]..pattern.colptr[j + 1] {
@@ -97,11 +97,11 @@ impl<'a> Driver<'a, '_> {
         busy.iter().position(|busy| !busy).and_then(|i| system.rows.get(i)).map(|row| row.equation)
     }
 
-    pub(super) fn non_finite(&mut self, t: f64) -> Stop {
+    pub(super) fn non_finite(&mut self, t: f64) -> EarlyStop {
         let system = self.system;
         let model = self.ida().equations();
         let Some((at, y, yp)) = model.trap.take() else {
-            return Stop::new(End::NonFinite, report::non_finite(system, t, None));
+            return EarlyStop::new(End::NonFinite, report::non_finite(system, t, None));
         };
         model.observe(at, &y, &yp);
         let trap = report::find_trap(system, &model.values);
@@ -110,12 +110,12 @@ impl<'a> Driver<'a, '_> {
             Some((row, column)) => report::infinite_derivative(system, at, row, column),
             None => report::non_finite(system, at, trap),
         };
-        Stop::new(End::NonFinite, diagnostic)
+        EarlyStop::new(End::NonFinite, diagnostic)
     }
 }
 
 /// Row and column of the first entry of the Jacobian that is not finite.
-fn infinite_derivative(model: &mut Model<'_>, t: f64, y: &[f64], yp: &[f64]) -> Option<(usize, usize)> {
+fn infinite_derivative(model: &mut IntegrationModel<'_>, t: f64, y: &[f64], yp: &[f64]) -> Option<(usize, usize)> {
     let pattern = &model.system.pattern;
     let mut entries = vec![0.0; pattern.nnz()];
     model.jacobian(t, 1.0, y, yp, &mut entries);

@@ -1,14 +1,14 @@
 //! From event to event: steps, rows on the grid, and what the outside has to say between them.
 
-use super::{Cause, Driver, Flow};
+use super::{Driver, EventCause, StopResult};
 use crate::Progress;
-use crate::ida::{Equations, Failure, Reached};
+use crate::ida::{AdvanceReturn, DaeEquations, IdaFailure};
 use crate::lower::ColumnRole;
-use crate::model::Model;
+use crate::model::IntegrationModel;
 use crate::modes::same_time;
 use crate::report;
 use crate::selection;
-use bramah_expr::Node;
+use bramah_expr::ExprNode;
 
 /// When time moves by less than this part of the run from pause to pause, so many times in a row, the step size counts
 /// as collapsed: the run would not end within days.
@@ -28,16 +28,16 @@ const FARTHEST_JUMP: f64 = 100.0;
 const NOTICEABLE: f64 = 1e4;
 
 impl<'a> Driver<'a, '_> {
-    pub(super) fn integrate(&mut self) -> Flow {
+    pub(super) fn integrate(&mut self) -> StopResult {
         self.reach()?;
         if self.choice.is_some() || self.pauses() {
             return Ok(());
         }
-        if self.uses_terminal() { self.event(Cause::Terminal) } else { Ok(()) }
+        if self.uses_terminal() { self.event(EventCause::Terminal) } else { Ok(()) }
     }
 
     /// Integrates until `self.until`, or to where other states are needed.
-    pub(super) fn reach(&mut self) -> Flow {
+    pub(super) fn reach(&mut self) -> StopResult {
         while self.t < self.until && !same_time(self.t, self.until) && self.choice.is_none() {
             self.leg()?;
         }
@@ -47,7 +47,7 @@ impl<'a> Driver<'a, '_> {
     pub(super) fn uses_terminal(&self) -> bool {
         let exprs = &self.system.dae.exprs;
         let ids = (0..u32::try_from(exprs.len()).unwrap_or(u32::MAX)).map(bramah_expr::ExprId);
-        ids.into_iter().any(|e| exprs.node(e) == Node::Terminal)
+        ids.into_iter().any(|e| exprs.node(e) == ExprNode::Terminal)
     }
 
     /// The next event of known time.
@@ -68,7 +68,7 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Integrates to the next event, or the next bend of an input.
-    pub(super) fn leg(&mut self) -> Flow {
+    pub(super) fn leg(&mut self) -> StopResult {
         let (event, to) = (self.next_event(), self.next_stop());
         self.ida().set_stop(to);
         self.bound_steps();
@@ -78,11 +78,11 @@ impl<'a> Driver<'a, '_> {
             let target = if row < to && !same_time(row, to) { row } else { to };
             let before = self.unrecorded(target);
             match self.ida().advance(before.unwrap_or(target)) {
-                Ok((Reached::Output, t)) if before.is_some() => {
+                Ok((AdvanceReturn::Output, t)) if before.is_some() => {
                     self.t = t;
                     self.remember();
                 }
-                Ok((Reached::Output, t)) => {
+                Ok((AdvanceReturn::Output, t)) => {
                     self.t = t;
                     self.remember();
                     self.output()?;
@@ -90,37 +90,37 @@ impl<'a> Driver<'a, '_> {
                         return Ok(());
                     }
                 }
-                Ok((Reached::Pause, t)) => {
+                Ok((AdvanceReturn::Pause, t)) => {
                     self.creep = if t - self.t < CREEPING * span { self.creep + 1 } else { 0 };
                     self.t = t;
                     self.remember();
                     self.bound_steps();
                     self.look_outside()?;
                     if self.creep >= PATIENCE {
-                        self.begin_anew(Failure::ErrorTest, to)?;
+                        self.begin_anew(IdaFailure::ErrorTest, to)?;
                     }
                     if self.states_fail() {
                         return Ok(());
                     }
                 }
-                Ok((Reached::Stop, _)) => {
+                Ok((AdvanceReturn::Stop, _)) => {
                     self.t = to;
                     self.remember();
                     self.roots.clear();
                     return if event <= to || same_time(event, to) {
-                        self.event(Cause::Time)
+                        self.event(EventCause::Time)
                     } else if self.changes_by_time() | self.crosses_at_the_end() {
-                        self.event(Cause::Root)
+                        self.event(EventCause::Root)
                     } else {
                         self.pass_kink()
                     };
                 }
-                Ok((Reached::Root, t)) => {
+                Ok((AdvanceReturn::Root, t)) => {
                     self.t = t;
                     self.remember();
                     self.find_roots();
                     self.crosses_at_the_end();
-                    return self.event(Cause::Root);
+                    return self.event(EventCause::Root);
                 }
                 Err((failure, t)) => {
                     self.t = t;
@@ -169,10 +169,10 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Where there is no step, the integrator begins again, if that may help.
-    fn begin_anew(&mut self, failure: Failure, to: f64) -> Flow {
+    fn begin_anew(&mut self, failure: IdaFailure, to: f64) -> StopResult {
         let renewed = match failure {
-            Failure::Convergence => self.renew() || self.jump(),
-            Failure::ErrorTest => self.tests_too_much() && self.renew() && self.test_states_only(),
+            IdaFailure::Convergence => self.renew() || self.jump(),
+            IdaFailure::ErrorTest => self.tests_too_much() && self.renew() && self.test_states_only(),
             _ => false,
         };
         if !renewed {
@@ -229,11 +229,11 @@ impl<'a> Driver<'a, '_> {
             let moved: Vec<f64> = y.iter().enumerate().map(|(j, y)| y + state(j)).collect();
             model.observe(t, &moved, yp);
             driver.restart.before(system, &mut model.values, &moved);
-            let solved = driver.iterate(model, Cause::Time).is_ok();
+            let solved = driver.iterate(model, EventCause::Time).is_ok();
             driver.restart.gather(system, &mut model.values);
             solved
         });
-        let began = solved && self.first_step(Cause::Time);
+        let began = solved && self.first_step(EventCause::Time);
         if began && self.events.searched() {
             self.report_jump(&before, &weights);
         }
@@ -300,21 +300,21 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// At a bend of an input, or at the end.
-    pub(super) fn pass_kink(&mut self) -> Flow {
+    pub(super) fn pass_kink(&mut self) -> StopResult {
         let t = self.t;
         let row = self.grid.next();
         if row <= t || same_time(row, t) {
             self.output()?;
         }
         let (model, ..) = self.ida().parts();
-        let Model { playback, values, .. } = model;
+        let IntegrationModel { playback, values, .. } = model;
         playback.seek(t, values);
         self.remember_bend();
         Ok(())
     }
 
     /// A row on the grid.
-    pub(super) fn output(&mut self) -> Flow {
+    pub(super) fn output(&mut self) -> StopResult {
         let t = self.t;
         self.take_tangents();
         self.with_model(|driver, model, y, yp| {
@@ -334,7 +334,7 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Interruption and progress.
-    pub(super) fn look_outside(&mut self) -> Flow {
+    pub(super) fn look_outside(&mut self) -> StopResult {
         let progress = Progress { time: self.t, events: self.statistics.events };
         let Some(control) = &mut self.control else { return Ok(()) };
         if control.interrupt.is_some_and(|flag| flag.load(std::sync::atomic::Ordering::Relaxed)) {

@@ -1,6 +1,6 @@
 //! A run that is taken further from outside, step by step, with inputs set in between.
 
-use super::{Cause, Driver, Flow};
+use super::{Driver, EventCause, StopResult};
 use crate::{State, Statistics};
 use bramah_syntax::diag::Diagnostic;
 
@@ -20,11 +20,11 @@ impl Driver<'_, '_> {
     ///
     /// # Errors
     /// As a run that ends before.
-    pub fn advance(&mut self, inputs: &[(usize, f64)], t: f64) -> Flow {
+    pub fn advance(&mut self, inputs: &[(usize, f64)], t: f64) -> StopResult {
         self.go_to(inputs, t).map_err(|stop| stop.with_troubles(self.system))
     }
 
-    fn go_to(&mut self, inputs: &[(usize, f64)], t: f64) -> Flow {
+    fn go_to(&mut self, inputs: &[(usize, f64)], t: f64) -> StopResult {
         // first: whether the integrator's past still serves depends on how far the next step may go
         self.until = t;
         let model = self.ida().equations();
@@ -33,7 +33,7 @@ impl Driver<'_, '_> {
         if inputs.iter().any(|&(slot, value)| values[slot] != value) {
             self.pending.clear();
             self.pending.extend_from_slice(inputs);
-            self.event(Cause::Time)?;
+            self.event(EventCause::Time)?;
         }
         self.reach()?;
         self.observe();

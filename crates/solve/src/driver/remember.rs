@@ -1,8 +1,8 @@
 //! What delays will read: recorded step by step, and at events.
 
-use super::{Cause, Driver};
-use crate::events::Outcome;
-use crate::model::Model;
+use super::{Driver, EventCause};
+use crate::events::EventOutcome;
+use crate::model::IntegrationModel;
 use crate::past::points;
 
 impl<'a> Driver<'a, '_> {
@@ -34,8 +34,14 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Records that an event took what is delayed from these values to those of the model.
-    pub(super) fn remember_event(&mut self, model: &mut Model<'a>, cause: Cause, outcome: &Outcome, before: &[f64]) {
-        if before.is_empty() || !(cause == Cause::Time || outcome.changed || outcome.reinitialised) {
+    pub(super) fn remember_event(
+        &mut self,
+        model: &mut IntegrationModel<'a>,
+        cause: EventCause,
+        outcome: &EventOutcome,
+        before: &[f64],
+    ) {
+        if before.is_empty() || !(cause == EventCause::Time || outcome.changed || outcome.reinitialised) {
             return;
         }
         let after = model.sources();

@@ -5,15 +5,15 @@
 //! Where a crossing g causes the event, dtau = -dg / (dg/dt), both along the solution. Source: S. Galan, W. F. Feehery,
 //! P. I. Barton, Applied Numerical Mathematics 31 (1999) 17.
 
-use super::{Cause, Driver, Flow, Stop};
-use crate::Tangents;
+use super::{Driver, EarlyStop, EventCause, StopResult};
+use crate::TangentRequest;
 use crate::algebraic::{HOLD_STATES, holding};
-use crate::events::Outcome;
-use crate::ida::{Differentiable, Equations, Evaluation};
+use crate::events::EventOutcome;
+use crate::ida::{DaeEquations, DifferentiableEquations, EvaluationStatus};
 use crate::linear::Lu;
-use crate::lower::{Column, Layout, System};
-use crate::model::Model;
-use crate::modes::Modes;
+use crate::lower::{ExecutableSystem, UnknownColumn, ValueLayout};
+use crate::model::IntegrationModel;
+use crate::modes::CrossingModes;
 use crate::settings::End;
 use crate::tangents::column;
 use bramah_expr::VarId;
@@ -25,7 +25,7 @@ const REACH: f64 = 1e-5;
 const SMALL_KINK: f64 = 0.3;
 
 /// What is carried along.
-pub struct Carried {
+pub struct TangentPropagator {
     /// Per direction the derivatives of all unknowns.
     values: Vec<Vec<f64>>,
     /// And of their rates.
@@ -48,16 +48,21 @@ pub struct Carried {
 }
 
 /// An event about to be carried out: values and forced modes, to carry it out again beside.
-pub type Ready = Option<(Vec<f64>, Modes)>;
+pub type PendingEvent = Option<(Vec<f64>, CrossingModes)>;
 
 /// A solution and its trajectory in time: unknowns, derivatives.
-struct Trajectory {
+struct SolutionPoint {
     y: Vec<f64>,
     yp: Vec<f64>,
 }
 
-impl Carried {
-    pub fn new(system: &System, asked: &Tangents, wanted: &[VarId], nominal: &[f64]) -> Carried {
+impl TangentPropagator {
+    pub fn new(
+        system: &ExecutableSystem,
+        asked: &TangentRequest,
+        wanted: &[VarId],
+        nominal: &[f64],
+    ) -> TangentPropagator {
         let n = system.columns.len();
         let start = |direction: &Vec<(VarId, f64)>| {
             let mut values = vec![0.0; n];
@@ -70,7 +75,7 @@ impl Carried {
         };
         let count = asked.starts.len();
         let solved: Vec<bool> = system.columns.iter().map(|c| !c.is_state()).collect();
-        Carried {
+        TangentPropagator {
             values: asked.starts.iter().map(start).collect(),
             rates: vec![vec![0.0; n]; count],
             y: vec![0.0; n],
@@ -102,17 +107,17 @@ impl Carried {
         self.yp.copy_from_slice(yp);
     }
 
-    /// Makes the matrix for [`Carried::complete`] where the values belong; false when it is singular.
-    fn prepare(&mut self, model: &mut Model<'_>, t: f64) -> bool {
+    /// Makes the matrix for [`TangentPropagator::complete`] where the values belong; false when it is singular.
+    fn prepare(&mut self, model: &mut IntegrationModel<'_>, t: f64) -> bool {
         model.forget();
-        model.differentiate(t, &self.y, &self.yp) == Evaluation::Done
-            && model.jacobian(t, HOLD_STATES, &self.y, &self.yp, &mut self.matrix) == Evaluation::Done
+        model.differentiate(t, &self.y, &self.yp) == EvaluationStatus::Done
+            && model.jacobian(t, HOLD_STATES, &self.y, &self.yp, &mut self.matrix) == EvaluationStatus::Done
             && self.lu.factor(&self.matrix).is_ok()
     }
 
     /// From the derivatives of states those of everything else, so that they satisfy the equations; `own` is what the
     /// equations change by themselves.
-    fn complete(&mut self, model: &Model<'_>, values: &mut [f64], rates: &mut [f64], own: &[f64]) -> bool {
+    fn complete(&mut self, model: &IntegrationModel<'_>, values: &mut [f64], rates: &mut [f64], own: &[f64]) -> bool {
         for (j, state) in self.states.iter().enumerate() {
             rates[j] = 0.0;
             values[j] = if *state { values[j] } else { 0.0 };
@@ -137,7 +142,7 @@ impl Carried {
     }
 
     /// The same for all directions.
-    fn complete_all(&mut self, model: &Model<'_>) -> bool {
+    fn complete_all(&mut self, model: &IntegrationModel<'_>) -> bool {
         let (mut values, mut rates) = (std::mem::take(&mut self.values), std::mem::take(&mut self.rates));
         let own = vec![0.0; self.y.len()];
         let done = values.iter_mut().zip(&mut rates).all(|(s, sp)| self.complete(model, s, sp, &own));
@@ -146,15 +151,15 @@ impl Carried {
     }
 
     /// How the solution itself goes on in time: rates of all unknowns, and theirs.
-    fn trajectory(&mut self, model: &mut Model<'_>, t: f64, step: f64) -> Option<Trajectory> {
+    fn trajectory(&mut self, model: &mut IntegrationModel<'_>, t: f64, step: f64) -> Option<SolutionPoint> {
         let n = self.y.len();
         let (mut up, mut own) = (vec![0.0; n], vec![0.0; n]);
         let dt = (1e-4 * step).max(1e-11 * t.abs()).max(f64::MIN_POSITIVE.sqrt());
-        let known = model.residual(t - dt, &self.y, &self.yp, &mut own) == Evaluation::Done
-            && model.residual(t + dt, &self.y, &self.yp, &mut up) == Evaluation::Done;
+        let known = model.residual(t - dt, &self.y, &self.yp, &mut own) == EvaluationStatus::Done
+            && model.residual(t + dt, &self.y, &self.yp, &mut up) == EvaluationStatus::Done;
         own.iter_mut().zip(&up).for_each(|(d, u)| *d = (u - *d) / (2.0 * dt));
         let (mut y, mut yp) = (self.yp.clone(), vec![0.0; n]);
-        (known && self.complete(model, &mut y, &mut yp, &own)).then_some(Trajectory { y, yp })
+        (known && self.complete(model, &mut y, &mut yp, &own)).then_some(SolutionPoint { y, yp })
     }
 
     /// How far to go along a direction for a difference.
@@ -171,7 +176,15 @@ impl Carried {
     }
 
     /// How a crossing changes along a direction, with time by `dt`.
-    fn crossing(&self, model: &mut Model<'_>, t: f64, raw: usize, dt: f64, values: &[f64], rates: &[f64]) -> f64 {
+    fn crossing(
+        &self,
+        model: &mut IntegrationModel<'_>,
+        t: f64,
+        raw: usize,
+        dt: f64,
+        values: &[f64],
+        rates: &[f64],
+    ) -> f64 {
         let reach = self.reach(values);
         let mut at = |by: f64| {
             let (y, yp) = self.moved(by, values, rates);
@@ -181,14 +194,14 @@ impl Carried {
     }
 }
 
-fn lost(text: &str, t: f64) -> Stop {
+fn lost(text: &str, t: f64) -> EarlyStop {
     let text = format!("{text} at {} s", bramah_results::number::rounded(t, 6));
-    Stop::new(End::NonFinite, Diagnostic::new(Code::NonFinite, text))
+    EarlyStop::new(End::NonFinite, Diagnostic::new(Code::NonFinite, text))
 }
 
 impl<'a> Driver<'a, '_> {
     /// At the start, from the derivatives of the states.
-    pub(super) fn start_tangents(&mut self, model: &mut Model<'a>) -> Flow {
+    pub(super) fn start_tangents(&mut self, model: &mut IntegrationModel<'a>) -> StopResult {
         let Some(mut carried) = self.carried.take() else { return Ok(()) };
         self.restart.gather(self.system, &mut model.values);
         carried.stand(self.restart.y(), self.restart.yp());
@@ -215,7 +228,7 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Fills the cells behind the wanted values of a row at these unknowns.
-    pub(super) fn tangent_cells(&mut self, model: &mut Model<'a>) {
+    pub(super) fn tangent_cells(&mut self, model: &mut IntegrationModel<'a>) {
         let Some(carried) = self.carried.take() else { return };
         let wanted = self.slots.len();
         let computed = carried.sources.iter().any(Option::is_none);
@@ -249,12 +262,18 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// Before an event: completes the sensitivities at the solution and tells by how much the event moves in time.
-    pub(super) fn tangents_before(&mut self, model: &mut Model<'a>, cause: Cause, y: &[f64]) -> Flow {
+    pub(super) fn tangents_before(
+        &mut self,
+        model: &mut IntegrationModel<'a>,
+        cause: EventCause,
+        y: &[f64],
+    ) -> StopResult {
         let Some(mut carried) = self.carried.take() else { return Ok(()) };
         let (t, step) = (self.t, self.last_step);
         let rates: Vec<f64> = {
             let layout = &self.system.layout;
-            let rate = |c: &Column| layout.der(c.variable).filter(|_| c.is_state()).map_or(0.0, |d| model.values[d]);
+            let rate =
+                |c: &UnknownColumn| layout.der(c.variable).filter(|_| c.is_state()).map_or(0.0, |d| model.values[d]);
             self.system.columns.iter().map(rate).collect()
         };
         carried.stand(y, &rates);
@@ -262,7 +281,7 @@ impl<'a> Driver<'a, '_> {
         carried.shift.fill(0.0);
         let mut done = carried.prepare(model, t) && carried.complete_all(model);
         carried.before.clone_from(&carried.rates);
-        let root = self.roots.iter().position(|&d| d != 0).filter(|_| cause == Cause::Root && done);
+        let root = self.roots.iter().position(|&d| d != 0).filter(|_| cause == EventCause::Root && done);
         if let Some(function) = root {
             let raw = model.roots.raw_index(function);
             let trajectory = carried.trajectory(model, t, step);
@@ -279,12 +298,17 @@ impl<'a> Driver<'a, '_> {
     }
 
     /// What is needed to carry the event out again beside: only where states may be set.
-    pub(super) fn ready(&self, model: &Model<'a>) -> Ready {
+    pub(super) fn ready(&self, model: &IntegrationModel<'a>) -> PendingEvent {
         self.carried.as_ref().map(|_| (model.values.clone(), self.modes.clone()))
     }
 
     /// After an event whose new unknowns have been gathered: the sensitivities behind it.
-    pub(super) fn tangents_after(&mut self, model: &mut Model<'a>, outcome: &Outcome, ready: Ready) -> Flow {
+    pub(super) fn tangents_after(
+        &mut self,
+        model: &mut IntegrationModel<'a>,
+        outcome: &EventOutcome,
+        ready: PendingEvent,
+    ) -> StopResult {
         let (Some(mut carried), Some(ready)) = (self.carried.take(), ready) else { return Ok(()) };
         let t = self.t;
         carried.broken = outcome.changed || outcome.reinitialised;
@@ -311,8 +335,8 @@ impl<'a> Driver<'a, '_> {
     /// How the states behind an event move with those before it and its time, by carrying it out beside.
     fn repeat(
         &mut self,
-        carried: &Carried,
-        ready: &(Vec<f64>, Modes),
+        carried: &TangentPropagator,
+        ready: &(Vec<f64>, CrossingModes),
         direction: &[f64],
         dt: f64,
         out: &mut [f64],
@@ -322,7 +346,7 @@ impl<'a> Driver<'a, '_> {
         let slots: Vec<usize> = system.columns.iter().map(|c| system.layout.var(c.variable)).collect();
         let mut at = |by: f64| {
             let mut values = ready.0.clone();
-            values[Layout::TIME] += by * dt;
+            values[ValueLayout::TIME] += by * dt;
             for (j, &slot) in slots.iter().enumerate().filter(|(j, _)| carried.states[*j]) {
                 values[slot] = carried.y[j] + by * direction[j];
             }

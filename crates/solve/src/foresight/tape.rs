@@ -1,10 +1,10 @@
 //! Functions of time alone, written out in the order of evaluation: for a time, and in bounds over a stretch of time.
 
-use super::bounds::{Bounds, Span};
-use crate::lower::System;
+use super::bounds::{IntervalEnclosure, RealInterval};
+use crate::lower::ExecutableSystem;
 use bramah_expr::function::Function;
-use bramah_expr::{Binary, ExprId, Exprs, FunctionId, Node, Rel, Unary, VarId, math};
-use bramah_model::structure::{Assign, Block, Unknown};
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, FunctionId, RelationalOp, UnaryFunction, VarId, math};
+use bramah_model::structure::{BltBlock, ExplicitAssignment, Unknown};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Longer functions and deeper ones are left to the integrator.
@@ -12,43 +12,43 @@ const MOST_STEPS: usize = 2000;
 const DEEPEST: u32 = 500;
 
 #[derive(Clone, Debug)]
-enum Step {
+enum TapeOperation {
     Number(f64),
     Time,
-    /// What stands between events, by its place in `Tape::held`.
+    /// What stands between events, by its place in `RelationTape::held`.
     Held(usize),
-    Unary(Unary, usize),
-    Binary(Binary, usize, usize),
-    Relation(Rel, usize, usize),
+    Unary(UnaryFunction, usize),
+    Binary(BinaryFunction, usize, usize),
+    Relation(RelationalOp, usize, usize),
     Choice(usize, usize, usize),
     Call(FunctionId, usize, Vec<usize>),
 }
 
 /// The difference of the sides of a relation that time alone changes between events.
 #[derive(Clone, Debug)]
-pub struct Tape {
-    steps: Vec<Step>,
+pub struct RelationTape {
+    steps: Vec<TapeOperation>,
     /// Slots of parameters and discrete values.
     pub held: Vec<usize>,
     /// No step of it is without bounds.
     pub bounded: bool,
 }
 
-impl Tape {
+impl RelationTape {
     /// The difference at a time.
     pub fn at(&self, functions: &[Function], held: &[f64], t: f64, scratch: &mut Vec<f64>) -> f64 {
         scratch.clear();
         for step in &self.steps {
             let of = |i: usize| scratch[i];
             let value = match *step {
-                Step::Number(x) => x,
-                Step::Time => t,
-                Step::Held(i) => held[i],
-                Step::Unary(op, a) => math::unary(op, of(a)),
-                Step::Binary(op, a, b) => math::binary(op, of(a), of(b)),
-                Step::Relation(rel, a, b) => math::truth(math::holds(rel, of(a), of(b))),
-                Step::Choice(c, a, b) => of(if of(c) == 0.0 { b } else { a }),
-                Step::Call(function, output, ref args) => {
+                TapeOperation::Number(x) => x,
+                TapeOperation::Time => t,
+                TapeOperation::Held(i) => held[i],
+                TapeOperation::Unary(op, a) => math::unary(op, of(a)),
+                TapeOperation::Binary(op, a, b) => math::binary(op, of(a), of(b)),
+                TapeOperation::Relation(rel, a, b) => math::truth(math::holds(rel, of(a), of(b))),
+                TapeOperation::Choice(c, a, b) => of(if of(c) == 0.0 { b } else { a }),
+                TapeOperation::Call(function, output, ref args) => {
                     let function = &functions[function.0 as usize];
                     let args: Vec<f64> = args.iter().map(|&a| of(a)).collect();
                     let mut out = vec![f64::NAN; function.outputs.len()];
@@ -62,38 +62,38 @@ impl Tape {
     }
 
     /// The difference and its slope over a stretch of time.
-    pub fn over(&self, held: &[f64], time: Span, scratch: &mut Vec<Bounds>) -> Bounds {
+    pub fn over(&self, held: &[f64], time: RealInterval, scratch: &mut Vec<IntervalEnclosure>) -> IntervalEnclosure {
         scratch.clear();
         for step in &self.steps {
             let of = |i: usize| scratch[i];
             let bounds = match *step {
-                Step::Number(x) => Bounds::constant(x),
-                Step::Time => Bounds { value: time, slope: Span::exactly(1.0) },
-                Step::Held(i) => Bounds::constant(held[i]),
-                Step::Unary(op, a) => Bounds::unary(op, of(a)),
-                Step::Binary(Binary::Mul, a, b) if a == b => Bounds::square(of(a)),
-                Step::Binary(op, a, b) => Bounds::binary(op, of(a), of(b)),
-                Step::Relation(rel, a, b) => Bounds::relation(rel, of(a), of(b)),
-                Step::Choice(c, a, b) => Bounds::choice(of(c), of(a), of(b)),
-                Step::Call(..) => Bounds::UNKNOWN,
+                TapeOperation::Number(x) => IntervalEnclosure::constant(x),
+                TapeOperation::Time => IntervalEnclosure { value: time, slope: RealInterval::exactly(1.0) },
+                TapeOperation::Held(i) => IntervalEnclosure::constant(held[i]),
+                TapeOperation::Unary(op, a) => IntervalEnclosure::unary(op, of(a)),
+                TapeOperation::Binary(BinaryFunction::Mul, a, b) if a == b => IntervalEnclosure::square(of(a)),
+                TapeOperation::Binary(op, a, b) => IntervalEnclosure::binary(op, of(a), of(b)),
+                TapeOperation::Relation(rel, a, b) => IntervalEnclosure::relation(rel, of(a), of(b)),
+                TapeOperation::Choice(c, a, b) => IntervalEnclosure::choice(of(c), of(a), of(b)),
+                TapeOperation::Call(..) => IntervalEnclosure::UNKNOWN,
             };
             scratch.push(bounds);
         }
-        scratch.last().copied().unwrap_or(Bounds::UNKNOWN)
+        scratch.last().copied().unwrap_or(IntervalEnclosure::UNKNOWN)
     }
 }
 
 /// Writes tapes of one system.
-pub struct Writer<'a> {
-    system: &'a System,
+pub struct TapeWriter<'a> {
+    system: &'a ExecutableSystem,
     /// What blocks between events compute by one formula.
     formulas: FxHashMap<VarId, ExprId>,
     /// What else moves between events.
     moving: FxHashSet<VarId>,
 }
 
-impl<'a> Writer<'a> {
-    pub fn new(system: &'a System) -> Self {
+impl<'a> TapeWriter<'a> {
+    pub fn new(system: &'a ExecutableSystem) -> Self {
         let dae = &system.dae;
         let delayed = dae.delays.iter().map(|d| d.variable);
         let columns = system.columns.iter().map(|c| c.variable);
@@ -101,53 +101,55 @@ impl<'a> Writer<'a> {
             dae.inputs.iter().chain(&dae.states).copied().chain(columns).chain(delayed).collect();
         // parameters that an analysis has made states stand still
         let still = dae.continuous.iter().filter_map(|block| match block {
-            Block::Assign(Assign { unknown: Unknown::Der(v), value: Exprs::ZERO, .. }) => Some(v),
+            BltBlock::Assign(ExplicitAssignment { unknown: Unknown::Der(v), value: Exprs::ZERO, .. }) => Some(v),
             _ => None,
         });
         still.for_each(|v| _ = moving.remove(v));
         let mut formulas = FxHashMap::default();
         for block in &dae.continuous {
             match block {
-                Block::Assign(Assign { unknown: Unknown::Var(v), value, .. }) => _ = formulas.insert(*v, *value),
-                Block::Assign(_) => {}
-                Block::Loop(found) => {
+                BltBlock::Assign(ExplicitAssignment { unknown: Unknown::Var(v), value, .. }) => {
+                    _ = formulas.insert(*v, *value)
+                }
+                BltBlock::Assign(_) => {}
+                BltBlock::Loop(found) => {
                     let inner = found.inner.iter().map(|assign| &assign.unknown);
                     moving.extend(found.tearing.iter().chain(inner).map(|unknown| match unknown {
                         Unknown::Var(v) | Unknown::Der(v) => *v,
                     }));
                 }
-                Block::Mixed(_) => unreachable!("only at events and at the start"),
+                BltBlock::Mixed(_) => unreachable!("only at events and at the start"),
             }
         }
-        Writer { system, formulas, moving }
+        TapeWriter { system, formulas, moving }
     }
 
     /// The difference of two expressions; `None` where more than time moves them.
-    pub fn difference(&self, left: ExprId, right: ExprId) -> Option<Tape> {
-        let tape = Tape { steps: Vec::new(), held: Vec::new(), bounded: true };
-        let mut sheet = Sheet { writer: self, tape, places: FxHashMap::default() };
+    pub fn difference(&self, left: ExprId, right: ExprId) -> Option<RelationTape> {
+        let tape = RelationTape { steps: Vec::new(), held: Vec::new(), bounded: true };
+        let mut sheet = TapeDraft { writer: self, tape, places: FxHashMap::default() };
         let (left, right) = (sheet.place(left, 0)?, sheet.place(right, 0)?);
-        sheet.step(Step::Binary(Binary::Sub, left, right))?;
+        sheet.step(TapeOperation::Binary(BinaryFunction::Sub, left, right))?;
         Some(sheet.tape)
     }
 }
 
 /// A tape that is being written.
-struct Sheet<'a> {
-    writer: &'a Writer<'a>,
-    tape: Tape,
+struct TapeDraft<'a> {
+    writer: &'a TapeWriter<'a>,
+    tape: RelationTape,
     places: FxHashMap<ExprId, usize>,
 }
 
-impl Sheet<'_> {
-    fn step(&mut self, step: Step) -> Option<usize> {
+impl TapeDraft<'_> {
+    fn step(&mut self, step: TapeOperation) -> Option<usize> {
         self.tape.steps.push(step);
         (self.tape.steps.len() < MOST_STEPS).then_some(self.tape.steps.len() - 1)
     }
 
     fn held(&mut self, slot: usize) -> Option<usize> {
         self.tape.held.push(slot);
-        self.step(Step::Held(self.tape.held.len() - 1))
+        self.step(TapeOperation::Held(self.tape.held.len() - 1))
     }
 
     /// Where the value of an expression stands.
@@ -162,38 +164,38 @@ impl Sheet<'_> {
         let system = self.writer.system;
         let (dae, layout) = (&system.dae, &system.layout);
         let place = match dae.exprs.node(e) {
-            Node::Num(bits) => self.step(Step::Number(f64::from_bits(bits))),
-            Node::Time => self.step(Step::Time),
-            Node::Var(v) if self.writer.moving.contains(&v) => None,
-            Node::Var(v) => match self.writer.formulas.get(&v) {
+            ExprNode::Num(bits) => self.step(TapeOperation::Number(f64::from_bits(bits))),
+            ExprNode::Time => self.step(TapeOperation::Time),
+            ExprNode::Var(v) if self.writer.moving.contains(&v) => None,
+            ExprNode::Var(v) => match self.writer.formulas.get(&v) {
                 Some(&formula) => self.place(formula, depth),
                 None => self.held(layout.var(v)),
             },
-            Node::Pre(v) => self.held(layout.pre(v)?),
-            Node::Unary(op, a) => {
+            ExprNode::Pre(v) => self.held(layout.pre(v)?),
+            ExprNode::Unary(op, a) => {
                 let a = self.place(a, depth)?;
-                self.step(Step::Unary(op, a))
+                self.step(TapeOperation::Unary(op, a))
             }
-            Node::Binary(op, a, b) => {
+            ExprNode::Binary(op, a, b) => {
                 let (a, b) = (self.place(a, depth)?, self.place(b, depth)?);
-                self.tape.bounded &= op != Binary::Atan2;
-                self.step(Step::Binary(op, a, b))
+                self.tape.bounded &= op != BinaryFunction::Atan2;
+                self.step(TapeOperation::Binary(op, a, b))
             }
-            Node::Rel(rel, a, b) => {
+            ExprNode::Rel(rel, a, b) => {
                 let (a, b) = (self.place(a, depth)?, self.place(b, depth)?);
-                self.step(Step::Relation(rel, a, b))
+                self.step(TapeOperation::Relation(rel, a, b))
             }
-            Node::If(c, a, b) => {
+            ExprNode::If(c, a, b) => {
                 let (c, a, b) = (self.place(c, depth)?, self.place(a, depth)?, self.place(b, depth)?);
-                self.step(Step::Choice(c, a, b))
+                self.step(TapeOperation::Choice(c, a, b))
             }
-            Node::Homotopy(a, _) => self.place(a, depth),
-            Node::Call(function, output, args) => {
+            ExprNode::Homotopy(a, _) => self.place(a, depth),
+            ExprNode::Call(function, output, args) => {
                 let args = dae.exprs.args(args).iter().map(|&a| self.place(a, depth)).collect::<Option<_>>()?;
                 self.tape.bounded = false;
-                self.step(Step::Call(function, output as usize, args))
+                self.step(TapeOperation::Call(function, output as usize, args))
             }
-            Node::Initial => self.step(Step::Number(0.0)),
+            ExprNode::Initial => self.step(TapeOperation::Number(0.0)),
             _ => None,
         }?;
         self.places.insert(e, place);

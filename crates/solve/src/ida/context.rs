@@ -3,8 +3,8 @@
 
 #![allow(unsafe_code, reason = "functions called by SUNDIALS; each block states why it is sound")]
 
-use super::{Differentiable, Equations, Evaluation, Tolerances, operations};
-use crate::linear::{Lu, Singular};
+use super::{DaeEquations, DifferentiableEquations, EvaluationStatus, IntegratorTolerances, operations};
+use crate::linear::{Lu, SingularMatrix};
 use crate::vectors::LONG;
 use std::os::raw::{c_int, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -12,13 +12,13 @@ use std::ptr::null_mut;
 use sundials_sys as s;
 
 /// What the C side points to.
-pub(super) struct Context<E> {
+pub(super) struct IdaContext<E> {
     pub equations: E,
     pub n: usize,
     pub roots: usize,
-    pub tolerances: Tolerances,
+    pub tolerances: IntegratorTolerances,
     pub lu: Lu,
-    pub singular: Option<Singular>,
+    pub singular: Option<SingularMatrix>,
     pub residual_calls: u64,
     pub jacobian_calls: u64,
     pub crossing_calls: u64,
@@ -36,7 +36,7 @@ pub(super) unsafe fn slice<'a>(v: s::N_Vector, n: usize) -> &'a mut [f64] {
 }
 
 /// Runs a callback; a panic becomes the code -1 (IDA stops) and its text is kept.
-fn guarded<E>(context: &mut Context<E>, run: impl FnOnce(&mut Context<E>) -> c_int) -> c_int {
+fn guarded<E>(context: &mut IdaContext<E>, run: impl FnOnce(&mut IdaContext<E>) -> c_int) -> c_int {
     match catch_unwind(AssertUnwindSafe(|| run(context))) {
         Ok(code) => code,
         Err(payload) => {
@@ -48,12 +48,12 @@ fn guarded<E>(context: &mut Context<E>, run: impl FnOnce(&mut Context<E>) -> c_i
     }
 }
 
-fn code_of<E>(context: &mut Context<E>, evaluation: Evaluation) -> c_int {
-    context.non_finite = evaluation == Evaluation::Retry;
+fn code_of<E>(context: &mut IdaContext<E>, evaluation: EvaluationStatus) -> c_int {
+    context.non_finite = evaluation == EvaluationStatus::Retry;
     c_int::from(context.non_finite)
 }
 
-pub(super) unsafe extern "C" fn on_residual<E: Equations>(
+pub(super) unsafe extern "C" fn on_residual<E: DaeEquations>(
     t: f64,
     y: s::N_Vector,
     yp: s::N_Vector,
@@ -62,7 +62,7 @@ pub(super) unsafe extern "C" fn on_residual<E: Equations>(
 ) -> c_int {
     // SAFETY: `user` is the context given to IDASetUserData; IDA passes distinct serial vectors of n entries
     let (context, y, yp, r) = unsafe {
-        let context = &mut *user.cast::<Context<E>>();
+        let context = &mut *user.cast::<IdaContext<E>>();
         let n = context.n;
         (context, slice(y, n), slice(yp, n), slice(r, n))
     };
@@ -74,7 +74,7 @@ pub(super) unsafe extern "C" fn on_residual<E: Equations>(
 }
 
 #[allow(clippy::too_many_arguments, reason = "the signature of IDALsJacFn")]
-pub(super) unsafe extern "C" fn on_jacobian<E: Equations>(
+pub(super) unsafe extern "C" fn on_jacobian<E: DaeEquations>(
     t: f64,
     cj: f64,
     y: s::N_Vector,
@@ -88,7 +88,7 @@ pub(super) unsafe extern "C" fn on_jacobian<E: Equations>(
 ) -> c_int {
     // SAFETY: as above; the matrix is the one made by `new_matrix`
     let (context, y, yp, val) = unsafe {
-        let context = &mut *user.cast::<Context<E>>();
+        let context = &mut *user.cast::<IdaContext<E>>();
         let n = context.n;
         (context, slice(y, n), slice(yp, n), &mut *(*matrix).content.cast::<Vec<f64>>())
     };
@@ -100,7 +100,7 @@ pub(super) unsafe extern "C" fn on_jacobian<E: Equations>(
 }
 
 #[allow(clippy::too_many_arguments, reason = "the signature of IDASensResFn")]
-pub(super) unsafe extern "C" fn on_tangents<E: Differentiable>(
+pub(super) unsafe extern "C" fn on_tangents<E: DifferentiableEquations>(
     count: c_int,
     t: f64,
     y: s::N_Vector,
@@ -116,14 +116,14 @@ pub(super) unsafe extern "C" fn on_tangents<E: Differentiable>(
 ) -> c_int {
     // SAFETY: as above
     let (context, y, yp) = unsafe {
-        let context = &mut *user.cast::<Context<E>>();
+        let context = &mut *user.cast::<IdaContext<E>>();
         let n = context.n;
         (context, slice(y, n), slice(yp, n))
     };
     let each = 0..usize::try_from(count).unwrap_or(0);
     guarded(context, |c| {
         let evaluation = c.equations.differentiate(t, y, yp);
-        for k in each.take_while(|_| evaluation == Evaluation::Done) {
+        for k in each.take_while(|_| evaluation == EvaluationStatus::Done) {
             // SAFETY: three arrays of `count` distinct serial vectors of n entries
             let (s, sp, r) =
                 unsafe { (slice(*tangents.add(k), c.n), slice(*rates.add(k), c.n), slice(*out.add(k), c.n)) };
@@ -133,7 +133,7 @@ pub(super) unsafe extern "C" fn on_tangents<E: Differentiable>(
     })
 }
 
-pub(super) unsafe extern "C" fn on_crossings<E: Equations>(
+pub(super) unsafe extern "C" fn on_crossings<E: DaeEquations>(
     t: f64,
     y: s::N_Vector,
     yp: s::N_Vector,
@@ -142,7 +142,7 @@ pub(super) unsafe extern "C" fn on_crossings<E: Equations>(
 ) -> c_int {
     // SAFETY: as above; `g` has as many entries as were announced to IDARootInit
     let (context, y, yp, g) = unsafe {
-        let context = &mut *user.cast::<Context<E>>();
+        let context = &mut *user.cast::<IdaContext<E>>();
         let (n, roots) = (context.n, context.roots);
         (context, slice(y, n), slice(yp, n), std::slice::from_raw_parts_mut(g, roots))
     };
@@ -153,13 +153,17 @@ pub(super) unsafe extern "C" fn on_crossings<E: Equations>(
     })
 }
 
-pub(super) unsafe extern "C" fn on_weights<E: Equations>(y: s::N_Vector, w: s::N_Vector, user: *mut c_void) -> c_int {
+pub(super) unsafe extern "C" fn on_weights<E: DaeEquations>(
+    y: s::N_Vector,
+    w: s::N_Vector,
+    user: *mut c_void,
+) -> c_int {
     // SAFETY: as above
     let (context, y, w) = unsafe {
-        let context = &*user.cast::<Context<E>>();
+        let context = &*user.cast::<IdaContext<E>>();
         (context, slice(y, context.n), slice(w, context.n))
     };
-    let Tolerances { relative, absolute, share } = &context.tolerances;
+    let IntegratorTolerances { relative, absolute, share } = &context.tolerances;
     for (((w, y), absolute), share) in w.iter_mut().zip(y).zip(absolute).zip(share) {
         *w = share / (relative * y.abs() + absolute);
     }
@@ -198,9 +202,9 @@ unsafe extern "C" fn solver_initialize(_: s::SUNLinearSolver) -> s::SUNErrCode {
     0
 }
 
-unsafe extern "C" fn solver_setup<E: Equations>(ls: s::SUNLinearSolver, a: s::SUNMatrix) -> c_int {
+unsafe extern "C" fn solver_setup<E: DaeEquations>(ls: s::SUNLinearSolver, a: s::SUNMatrix) -> c_int {
     // SAFETY: the content is the context (owned by Ida); the matrix is ours
-    let (context, val) = unsafe { (&mut *(*ls).content.cast::<Context<E>>(), &*(*a).content.cast::<Vec<f64>>()) };
+    let (context, val) = unsafe { (&mut *(*ls).content.cast::<IdaContext<E>>(), &*(*a).content.cast::<Vec<f64>>()) };
     guarded(context, |c| {
         c.singular = c.lu.factor(val).err();
         // positive: recoverable, IDA tries a smaller step
@@ -208,7 +212,7 @@ unsafe extern "C" fn solver_setup<E: Equations>(ls: s::SUNLinearSolver, a: s::SU
     })
 }
 
-unsafe extern "C" fn solver_solve<E: Equations>(
+unsafe extern "C" fn solver_solve<E: DaeEquations>(
     ls: s::SUNLinearSolver,
     _: s::SUNMatrix,
     x: s::N_Vector,
@@ -217,7 +221,7 @@ unsafe extern "C" fn solver_solve<E: Equations>(
 ) -> c_int {
     // SAFETY: as above; x and b are serial vectors of n entries, b is only read, before x is borrowed
     let (context, x) = unsafe {
-        let context = &mut *(*ls).content.cast::<Context<E>>();
+        let context = &mut *(*ls).content.cast::<IdaContext<E>>();
         let (xp, bp) = (s::N_VGetArrayPointer(x), s::N_VGetArrayPointer(b));
         if xp != bp {
             std::ptr::copy_nonoverlapping(bp, xp, context.n);
@@ -253,7 +257,7 @@ pub(super) fn new_matrix(nnz: usize, context: s::SUNContext) -> s::SUNMatrix {
     }
 }
 
-pub(super) fn new_solver<E: Equations>(content: *mut Context<E>, context: s::SUNContext) -> s::SUNLinearSolver {
+pub(super) fn new_solver<E: DaeEquations>(content: *mut IdaContext<E>, context: s::SUNContext) -> s::SUNLinearSolver {
     // SAFETY: a fresh shell, filled before use
     unsafe {
         let ls = s::SUNLinSolNewEmpty(context);

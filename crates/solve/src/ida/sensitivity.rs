@@ -5,17 +5,22 @@
 #![allow(unsafe_code, reason = "calls into SUNDIALS; each block states why it is sound")]
 
 use super::context::{new_vector, on_tangents, slice};
-use super::{Differentiable, Failure, Ida, check};
+use super::{DifferentiableEquations, Ida, IdaFailure, check};
 use std::os::raw::c_int;
 use sundials_sys as s;
 
-impl<E: Differentiable> Ida<E> {
+impl<E: DifferentiableEquations> Ida<E> {
     /// Carries sensitivities along from where the integrator starts: per direction values and rates, consistent with the
     /// equations. Their errors count in the choice of steps where they are `controlled`.
     ///
     /// # Errors
-    /// [`Failure::Code`] when SUNDIALS refuses the input.
-    pub fn begin_tangents(&mut self, values: &[Vec<f64>], rates: &[Vec<f64>], controlled: bool) -> Result<(), Failure> {
+    /// [`IdaFailure::Code`] when SUNDIALS refuses the input.
+    pub fn begin_tangents(
+        &mut self,
+        values: &[Vec<f64>],
+        rates: &[Vec<f64>],
+        controlled: bool,
+    ) -> Result<(), IdaFailure> {
         let count = c_int::try_from(values.len()).expect("fewer than 2^31 directions");
         self.tangents.extend(values.iter().chain(rates).map(|v| new_vector(v, self.sundials)));
         let (first, second) = self.tangents.split_at_mut(values.len());
@@ -32,7 +37,7 @@ impl<E: Differentiable> Ida<E> {
     ///
     /// # Errors
     /// As before.
-    pub fn restart_tangents(&mut self, values: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), Failure> {
+    pub fn restart_tangents(&mut self, values: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), IdaFailure> {
         for (vector, given) in self.tangents.iter().zip(values.iter().chain(rates)) {
             // SAFETY: the vectors are ours and not borrowed
             unsafe { slice(*vector, self.n).copy_from_slice(given) };

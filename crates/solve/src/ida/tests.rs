@@ -14,20 +14,20 @@ enum Fault {
     WrongJacobian,
 }
 
-impl Equations for Robertson {
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Evaluation {
+impl DaeEquations for Robertson {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus {
         match self.fault {
             Fault::PanicAt(at) if t > at => panic!("on purpose at {at}"),
-            Fault::NanAfter(at) if t > at => return Evaluation::Retry,
+            Fault::NanAfter(at) if t > at => return EvaluationStatus::Retry,
             _ => {}
         }
         let v = -0.04 * y[0] + 1e4 * y[1] * y[2];
         r[0] = v - yp[0];
         r[1] = -v - 3e7 * y[1] * y[1] - yp[1];
         r[2] = y[0] + y[1] + y[2] - 1.0;
-        Evaluation::Done
+        EvaluationStatus::Done
     }
-    fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], _: &[f64], val: &mut [f64]) -> Evaluation {
+    fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], _: &[f64], val: &mut [f64]) -> EvaluationStatus {
         let b = 1e4 * y[1];
         val.copy_from_slice(&[-0.04 - cj, 0.04, 1.0, 1e4 * y[2], -1e4 * y[2] - 6e7 * y[1] - cj, 1.0, b, -b, 1.0]);
         match self.fault {
@@ -35,7 +35,7 @@ impl Equations for Robertson {
             Fault::WrongJacobian => val.iter_mut().for_each(|v| *v *= -1e-6),
             _ => {}
         }
-        Evaluation::Done
+        EvaluationStatus::Done
     }
     fn crossings(&mut self, _: f64, y: &[f64], _: &[f64], g: &mut [f64]) {
         g[0] = y[0] - 1e-4;
@@ -44,8 +44,8 @@ impl Equations for Robertson {
 }
 
 fn robertson(fault: Fault) -> Ida<Robertson> {
-    let pattern = Pattern { n: 3, colptr: vec![0, 3, 6, 9], rowidx: [0, 1, 2].repeat(3) };
-    let tolerances = Tolerances { relative: 1e-4, absolute: vec![1e-8, 1e-6, 1e-6], share: vec![1.0; 3] };
+    let pattern = SparsityPattern { n: 3, colptr: vec![0, 3, 6, 9], rowidx: [0, 1, 2].repeat(3) };
+    let tolerances = IntegratorTolerances { relative: 1e-4, absolute: vec![1e-8, 1e-6, 1e-6], share: vec![1.0; 3] };
     let lu = Lu::new(&pattern, &[1.0, 1e-4, 1.0]);
     let start = (0.0, &[1.0, 0.0, 0.0][..], &[-0.04, 0.04, 0.0][..]);
     Ida::new(Robertson { fault }, &pattern, lu, 2, &tolerances, start).expect("accepted")
@@ -61,8 +61,8 @@ fn robertson_as_published() {
     while to < 5e9 {
         ida.pause_after(1000);
         match ida.advance(to).expect("integrates") {
-            (Reached::Root, t) => roots.push(t),
-            (Reached::Output, _) => {
+            (AdvanceReturn::Root, t) => roots.push(t),
+            (AdvanceReturn::Output, _) => {
                 y0.push(ida.y()[0]);
                 to *= 10.0;
             }
@@ -91,14 +91,14 @@ fn robertson_as_published() {
 fn stops_exactly_pauses_and_restarts() {
     let mut ida = robertson(Fault::None);
     ida.set_stop(0.1);
-    assert_eq!(ida.advance(1.0), Ok((Reached::Stop, 0.1)));
+    assert_eq!(ida.advance(1.0), Ok((AdvanceReturn::Stop, 0.1)));
     let (y, yp) = (ida.y().to_vec(), ida.yp().to_vec());
     let steps = ida.work().steps;
     ida.restart(0.1, &y, &yp).expect("accepted");
     ida.set_first_step(1e-3);
     ida.pause_after(5);
     let (reached, t) = ida.advance(1.0).expect("integrates");
-    assert_eq!(reached, Reached::Pause);
+    assert_eq!(reached, AdvanceReturn::Pause);
     assert!(t > 0.1);
     assert_eq!(ida.work().steps, steps + 5);
     let mut errors = vec![];
@@ -112,7 +112,7 @@ fn a_panic_in_a_callback_becomes_an_error() {
     std::panic::set_hook(Box::new(|_| {}));
     let failure = robertson(Fault::PanicAt(0.2)).advance(1.0);
     std::panic::set_hook(quiet);
-    assert!(matches!(failure, Err((Failure::Panic(text), t)) if text.contains("on purpose") && t <= 0.2));
+    assert!(matches!(failure, Err((IdaFailure::Panic(text), t)) if text.contains("on purpose") && t <= 0.2));
 }
 
 #[test]
@@ -123,8 +123,8 @@ fn faults_are_told_apart() {
         ida.advance(1.0).expect_err("must fail")
     };
     let (failure, t) = fails(Fault::NanAfter(0.1));
-    assert_eq!(failure, Failure::NonFinite);
+    assert_eq!(failure, IdaFailure::NonFinite);
     assert!(t > 0.05 && t <= 0.1, "comes close to the fault: {t}");
-    assert!(matches!(fails(Fault::SingularAfter(0.1)).0, Failure::Singular(Some(_))));
-    assert_eq!(fails(Fault::WrongJacobian).0, Failure::Convergence);
+    assert!(matches!(fails(Fault::SingularAfter(0.1)).0, IdaFailure::Singular(Some(_))));
+    assert_eq!(fails(Fault::WrongJacobian).0, IdaFailure::Convergence);
 }

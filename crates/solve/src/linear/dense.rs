@@ -1,26 +1,26 @@
 //! Dense LU with partial pivoting, one instance of the code for each size so that the loops have known bounds.
 
-use super::{Singular, row_weights};
-use crate::lower::Pattern;
+use super::{SingularMatrix, row_weights};
+use crate::lower::SparsityPattern;
 
 /// The largest size there is code for.
 pub const LARGEST: usize = 24;
 
 /// A dense factorisation of some fixed size.
-pub trait Dense: Send + std::fmt::Debug {
+pub trait DenseFactorization: Send + std::fmt::Debug {
     /// Factorises the matrix with these entries of the pattern.
-    fn factor(&mut self, val: &[f64]) -> Result<(), Singular>;
+    fn factor(&mut self, val: &[f64]) -> Result<(), SingularMatrix>;
     /// Replaces `b` by the solution; false when it is not finite.
     fn solve(&mut self, b: &mut [f64]) -> bool;
     /// Pattern of the matrix and sizes of its unknowns.
-    fn shape(&self) -> (&Pattern, &[f64]);
+    fn shape(&self) -> (&SparsityPattern, &[f64]);
 }
 
 /// A factorisation for this pattern, if it is small enough.
-pub fn new(pattern: &Pattern, column_scale: &[f64]) -> Option<Box<dyn Dense>> {
+pub fn new(pattern: &SparsityPattern, column_scale: &[f64]) -> Option<Box<dyn DenseFactorization>> {
     macro_rules! sizes {
         ($($n:literal)*) => {
-            match pattern.n { $($n => Some(Box::new(Fixed::<$n>::new(pattern, column_scale)) as Box<dyn Dense>),)* _ => None }
+            match pattern.n { $($n => Some(Box::new(FixedSizeLu::<$n>::new(pattern, column_scale)) as Box<dyn DenseFactorization>),)* _ => None }
         };
     }
     sizes!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24)
@@ -28,8 +28,8 @@ pub fn new(pattern: &Pattern, column_scale: &[f64]) -> Option<Box<dyn Dense>> {
 
 /// The factors, column by column: below the diagonal L, on and above it U.
 #[derive(Debug)]
-struct Fixed<const N: usize> {
-    pattern: Pattern,
+struct FixedSizeLu<const N: usize> {
+    pattern: SparsityPattern,
     column_scale: Vec<f64>,
     a: [[f64; N]; N],
     /// Reciprocal pivots.
@@ -39,9 +39,9 @@ struct Fixed<const N: usize> {
     weights: [f64; N],
 }
 
-impl<const N: usize> Fixed<N> {
-    fn new(pattern: &Pattern, column_scale: &[f64]) -> Self {
-        Fixed {
+impl<const N: usize> FixedSizeLu<N> {
+    fn new(pattern: &SparsityPattern, column_scale: &[f64]) -> Self {
+        FixedSizeLu {
             pattern: pattern.clone(),
             column_scale: column_scale.to_vec(),
             a: [[0.0; N]; N],
@@ -101,19 +101,19 @@ impl<const N: usize> Fixed<N> {
     }
 }
 
-impl<const N: usize> Dense for Fixed<N> {
-    fn factor(&mut self, val: &[f64]) -> Result<(), Singular> {
+impl<const N: usize> DenseFactorization for FixedSizeLu<N> {
+    fn factor(&mut self, val: &[f64]) -> Result<(), SingularMatrix> {
         self.load(val);
         row_weights(&self.pattern, val, &self.column_scale, &mut self.weights);
         for (i, r) in self.row.iter_mut().enumerate() {
             *r = i;
         }
         for j in 0..N {
-            let i = self.pivot(j).ok_or(Singular { column: j })?;
+            let i = self.pivot(j).ok_or(SingularMatrix { column: j })?;
             self.swap_rows(i, j);
             self.eliminate(j);
             if !self.inverse[j].is_finite() {
-                return Err(Singular { column: j });
+                return Err(SingularMatrix { column: j });
             }
         }
         Ok(())
@@ -141,7 +141,7 @@ impl<const N: usize> Dense for Fixed<N> {
         x.iter().all(|v| v.is_finite())
     }
 
-    fn shape(&self) -> (&Pattern, &[f64]) {
+    fn shape(&self) -> (&SparsityPattern, &[f64]) {
         (&self.pattern, &self.column_scale)
     }
 }

@@ -1,8 +1,8 @@
 //! Sparse LU after Gilbert and Peierls: the first factorisation chooses pivots and records the patterns of L and U,
 //! later ones only redo the arithmetic, as long as the pivots stay good.
 
-use super::{Singular, row_weights};
-use crate::lower::Pattern;
+use super::{SingularMatrix, row_weights};
+use crate::lower::SparsityPattern;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::colamd;
@@ -18,7 +18,7 @@ const DEPENDENT: f64 = 1e-12;
 /// Sparse LU factors with a fixed column order and pivots that change only when they must.
 #[derive(Debug)]
 pub struct SparseLu {
-    pattern: Pattern,
+    pattern: SparsityPattern,
     column_scale: Vec<f64>,
     /// Column of the matrix at each position of the elimination.
     order: Vec<u32>,
@@ -26,8 +26,8 @@ pub struct SparseLu {
     position: Vec<u32>,
     /// Pivot row at each position.
     pivot_row: Vec<u32>,
-    lower: Factor,
-    upper: Factor,
+    lower: SparseFactor,
+    upper: SparseFactor,
     inverse: Vec<f64>,
     /// The matrix entries in elimination order: position of the row, and index into the values.
     load_ptr: Vec<u32>,
@@ -37,7 +37,7 @@ pub struct SparseLu {
     weights: Vec<f64>,
     x: Vec<f64>,
     work: Vec<f64>,
-    search: Search,
+    search: DepthFirstScratch,
     ready: bool,
     /// Whether columns without a usable pivot are kept.
     keeping: bool,
@@ -47,13 +47,13 @@ pub struct SparseLu {
 
 /// Columns of L (without the unit diagonal) or U (without the diagonal).
 #[derive(Debug, Default)]
-struct Factor {
+struct SparseFactor {
     ptr: Vec<u32>,
     idx: Vec<u32>,
     val: Vec<f64>,
 }
 
-impl Factor {
+impl SparseFactor {
     fn clear(&mut self) {
         self.ptr.clear();
         self.ptr.push(0);
@@ -77,7 +77,7 @@ impl Factor {
 
 /// Scratch space of the depth-first search.
 #[derive(Debug, Default)]
-struct Search {
+struct DepthFirstScratch {
     mark: Vec<u32>,
     stack: Vec<(u32, u32)>,
     /// Positions whose L columns update the current column, in post-order.
@@ -92,7 +92,7 @@ fn count(n: usize) -> u32 {
 
 impl SparseLu {
     /// Orders the columns; the first factorisation chooses the pivots.
-    pub fn new(pattern: &Pattern, column_scale: &[f64]) -> Self {
+    pub fn new(pattern: &SparsityPattern, column_scale: &[f64]) -> Self {
         let n = pattern.n;
         SparseLu {
             order: column_order(pattern),
@@ -100,8 +100,8 @@ impl SparseLu {
             column_scale: column_scale.to_vec(),
             position: vec![NONE; n],
             pivot_row: vec![0; n],
-            lower: Factor::default(),
-            upper: Factor::default(),
+            lower: SparseFactor::default(),
+            upper: SparseFactor::default(),
             inverse: vec![0.0; n],
             load_ptr: Vec::new(),
             load_row: Vec::new(),
@@ -109,7 +109,7 @@ impl SparseLu {
             weights: vec![0.0; n],
             x: vec![0.0; n],
             work: vec![0.0; n],
-            search: Search::default(),
+            search: DepthFirstScratch::default(),
             ready: false,
             keeping: false,
             kept: 0,
@@ -118,12 +118,12 @@ impl SparseLu {
 
     /// The same, where a column without a usable pivot gets one of the size of a row that is left over: as long as that
     /// row holds, its unknown stays as it is.
-    pub fn keeping(pattern: &Pattern, column_scale: &[f64]) -> Self {
+    pub fn keeping(pattern: &SparsityPattern, column_scale: &[f64]) -> Self {
         SparseLu { keeping: true, ..Self::new(pattern, column_scale) }
     }
 
     /// Pattern of the matrix and sizes of its unknowns.
-    pub fn shape(&self) -> (&Pattern, &[f64]) {
+    pub fn shape(&self) -> (&SparsityPattern, &[f64]) {
         (&self.pattern, &self.column_scale)
     }
 
@@ -140,8 +140,8 @@ impl SparseLu {
     /// Factorises; true when pivots were searched for.
     ///
     /// # Errors
-    /// [`Singular`] when there is no usable pivot.
-    pub fn factor(&mut self, val: &[f64]) -> Result<bool, Singular> {
+    /// [`SingularMatrix`] when there is no usable pivot.
+    pub fn factor(&mut self, val: &[f64]) -> Result<bool, SingularMatrix> {
         if self.ready && self.refactor(val) {
             return Ok(false);
         }
@@ -165,7 +165,7 @@ impl SparseLu {
         self.kept += 1;
     }
 
-    fn search_pivots(&mut self, val: &[f64]) -> Result<(), Singular> {
+    fn search_pivots(&mut self, val: &[f64]) -> Result<(), SingularMatrix> {
         let n = self.pattern.n;
         row_weights(&self.pattern, val, &self.column_scale, &mut self.weights);
         self.position.fill(NONE);
@@ -213,7 +213,7 @@ impl SparseLu {
         self.upper.close_column();
     }
 
-    fn choose_pivot(&mut self, j: usize) -> Result<(), Singular> {
+    fn choose_pivot(&mut self, j: usize) -> Result<(), SingularMatrix> {
         if j >= self.pattern.n - self.kept {
             self.keep(j);
             return Ok(());
@@ -272,9 +272,9 @@ impl SparseLu {
         Some(if diagonal { column } else { best.1 })
     }
 
-    fn give_up(&mut self, column: u32) -> Singular {
+    fn give_up(&mut self, column: u32) -> SingularMatrix {
         self.x.fill(0.0);
-        Singular { column: column as usize }
+        SingularMatrix { column: column as usize }
     }
 
     /// Rows become positions, so that refactorisation and solution need no permutation inside.
@@ -376,9 +376,9 @@ impl SparseLu {
     }
 }
 
-impl Search {
+impl DepthFirstScratch {
     /// Depth first through the columns of L from the row on the stack.
-    fn descend(&mut self, mark: u32, position: &[u32], lower: &Factor) {
+    fn descend(&mut self, mark: u32, position: &[u32], lower: &SparseFactor) {
         while let Some((row, next)) = self.stack.last_mut() {
             let at = position[*row as usize];
             if at == NONE {
@@ -409,7 +409,7 @@ impl Search {
 }
 
 /// COLAMD by faer; the given order should that fail.
-fn column_order(pattern: &Pattern) -> Vec<u32> {
+fn column_order(pattern: &SparsityPattern) -> Vec<u32> {
     let n = pattern.n;
     let matrix = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &pattern.colptr, None, &pattern.rowidx);
     let (mut forward, mut inverse) = (vec![0usize; n], vec![0usize; n]);

@@ -12,10 +12,10 @@ impl Lcg {
     }
 }
 
-fn csc(n: usize, mut entries: Vec<(usize, usize, f64)>) -> (Pattern, Vec<f64>) {
+fn csc(n: usize, mut entries: Vec<(usize, usize, f64)>) -> (SparsityPattern, Vec<f64>) {
     entries.sort_by_key(|e| (e.1, e.0));
     entries.dedup_by_key(|e| (e.0, e.1));
-    let mut pattern = Pattern { n, colptr: vec![0; n + 1], rowidx: vec![] };
+    let mut pattern = SparsityPattern { n, colptr: vec![0; n + 1], rowidx: vec![] };
     let mut val = vec![];
     for (i, j, v) in entries {
         pattern.colptr[j + 1] += 1;
@@ -28,7 +28,7 @@ fn csc(n: usize, mut entries: Vec<(usize, usize, f64)>) -> (Pattern, Vec<f64>) {
     (pattern, val)
 }
 
-fn multiply(p: &Pattern, val: &[f64], x: &[f64]) -> Vec<f64> {
+fn multiply(p: &SparsityPattern, val: &[f64], x: &[f64]) -> Vec<f64> {
     let mut b = vec![0.0; p.n];
     for j in 0..p.n {
         for k in p.colptr[j]..p.colptr[j + 1] {
@@ -39,14 +39,14 @@ fn multiply(p: &Pattern, val: &[f64], x: &[f64]) -> Vec<f64> {
 }
 
 /// Largest error of the solution in units of `scale`.
-fn error(lu: &mut Lu, p: &Pattern, val: &[f64], scale: &[f64]) -> f64 {
+fn error(lu: &mut Lu, p: &SparsityPattern, val: &[f64], scale: &[f64]) -> f64 {
     let x: Vec<f64> = (0..p.n).map(|i| scale[i] * (1.0 + 0.1 * i as f64)).collect();
     let mut b = multiply(p, val, &x);
     assert!(lu.solve(&mut b));
     (0..p.n).map(|i| ((b[i] - x[i]) / x[i]).abs()).fold(0.0, f64::max)
 }
 
-fn random(n: usize, per_column: usize, seed: u64) -> (Pattern, Vec<f64>) {
+fn random(n: usize, per_column: usize, seed: u64) -> (SparsityPattern, Vec<f64>) {
     let mut g = Lcg(seed);
     let mut e = vec![];
     // a hidden permutation keeps the matrix regular without a full diagonal
@@ -132,7 +132,7 @@ fn refactorises_without_searching_and_searches_when_pivots_go_bad() {
 #[test]
 fn names_the_column_without_a_pivot() {
     let (p, val) = csc(3, vec![(0, 0, 1.0), (1, 1, 2.0), (0, 2, 1.0), (1, 2, 1.0), (2, 1, 0.0)]);
-    assert_eq!(Lu::new(&p, &[1.0; 3]).factor(&val), Err(Singular { column: 2 }));
+    assert_eq!(Lu::new(&p, &[1.0; 3]).factor(&val), Err(SingularMatrix { column: 2 }));
     let mut sparse = SparseLu::new(&p, &[1.0; 3]);
     assert!(sparse.factor(&val).is_err());
 }

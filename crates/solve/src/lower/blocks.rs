@@ -1,23 +1,23 @@
 //! The event and initial systems: blocks with their programs.
 
-use super::jacobian::{Differentials, Entry, compress};
-use super::layout::{Slot, slot};
-use super::program::{Assembler, Defs, Order};
-use super::shape::{Rules, Shaped, Shaper};
-use super::{AssignCode, BlockCode, LoopCode, MixedCode, Pattern, Program, Target};
+use super::jacobian::{Differentials, JacobianEntry, compress};
+use super::layout::{ValueSlot, slot};
+use super::program::{DefinitionOrder, KernelDefinitions, ProgramAssembler};
+use super::shape::{KernelExpression, KernelShaper, ShapingRules};
+use super::{AssignCode, AssignTarget, BlockCode, LoopCode, MixedCode, Program, SparsityPattern};
 use bramah_expr::{ExprId, VarId};
-use bramah_model::structure::{Assign, Block, Loop, Unknown};
+use bramah_model::structure::{AlgebraicLoop, BltBlock, ExplicitAssignment, Unknown};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Blocks whose definitions are made and whose programs are not: programs need the slots of all of them.
 #[derive(Debug)]
-pub enum Draft {
+pub enum BlockDraft {
     /// Neighbouring explicit assignments.
     Assign(AssignDraft),
     /// An algebraic loop.
     Loop(Box<LoopDraft>),
     /// A loop through discrete equations.
-    Mixed { continuous: Vec<Draft>, discrete: Vec<AssignDraft> },
+    Mixed { continuous: Vec<BlockDraft>, discrete: Vec<AssignDraft> },
 }
 
 /// Explicit assignments: either modes of crossings, none of which reads another, or no modes at all; and either all
@@ -26,49 +26,49 @@ pub enum Draft {
 pub struct AssignDraft {
     modes: bool,
     moved: bool,
-    targets: Vec<Target>,
-    slots: FxHashSet<Slot>,
-    defs: Defs,
+    targets: Vec<AssignTarget>,
+    slots: FxHashSet<ValueSlot>,
+    defs: KernelDefinitions,
 }
 
 /// An algebraic loop with the definitions of its residual and of its matrix.
 #[derive(Debug)]
 pub struct LoopDraft {
     code: LoopCode,
-    residual: Defs,
+    residual: KernelDefinitions,
     jacobian: Differentials,
 }
 
 /// Makes the definitions of sorted systems.
-pub struct Drafter<'s, 'a> {
-    shaper: &'s mut Shaper<'a>,
-    rules: Rules<'s>,
+pub struct BlockDrafter<'s, 'a> {
+    shaper: &'s mut KernelShaper<'a>,
+    rules: ShapingRules<'s>,
     /// The modes of crossings.
     modes: &'s FxHashSet<VarId>,
     /// Slots whose values `pre` values reach: they may move from pass to pass of an event iteration, all others keep
     /// the values of its first pass. Nobody asks at the start.
-    moved: FxHashSet<Slot>,
+    moved: FxHashSet<ValueSlot>,
 }
 
-impl<'s, 'a> Drafter<'s, 'a> {
+impl<'s, 'a> BlockDrafter<'s, 'a> {
     /// Definitions for this shaper. `inline` is an empty map.
     pub fn new(
-        shaper: &'s mut Shaper<'a>,
+        shaper: &'s mut KernelShaper<'a>,
         initial: bool,
-        inline: &'s FxHashMap<Slot, ExprId>,
+        inline: &'s FxHashMap<ValueSlot, ExprId>,
         modes: &'s FxHashSet<VarId>,
     ) -> Self {
         let moved = if initial { FxHashSet::default() } else { shaper.layout.pre_slots().collect() };
-        Drafter { shaper, rules: Rules { initial, inline, hoist: true }, modes, moved }
+        BlockDrafter { shaper, rules: ShapingRules { initial, inline, hoist: true }, modes, moved }
     }
 
     /// The definitions of a sorted system. Of neighbouring assignments those come first that stay through an event
     /// iteration, so that its later passes need not run them.
-    pub fn blocks(&mut self, blocks: &[Block]) -> Vec<Draft> {
-        let mut drafts: Vec<Draft> = Vec::new();
-        let mut later: Vec<(Target, Shaped)> = Vec::new();
+    pub fn blocks(&mut self, blocks: &[BltBlock]) -> Vec<BlockDraft> {
+        let mut drafts: Vec<BlockDraft> = Vec::new();
+        let mut later: Vec<(AssignTarget, KernelExpression)> = Vec::new();
         for block in blocks {
-            if let Block::Assign(assign) = block {
+            if let BltBlock::Assign(assign) = block {
                 let (target, shaped) = self.assign(assign);
                 if self.moves(&shaped.inputs) {
                     self.moved.insert(slot(target.slot));
@@ -82,12 +82,12 @@ impl<'s, 'a> Drafter<'s, 'a> {
                 self.join(&mut drafts, true, target, &shaped);
             }
             let draft = match block {
-                Block::Loop(l) => Draft::Loop(Box::new(draft_loop(l, &self.rules, self.shaper))),
-                Block::Mixed(mixed) => {
+                BltBlock::Loop(l) => BlockDraft::Loop(Box::new(draft_loop(l, &self.rules, self.shaper))),
+                BltBlock::Mixed(mixed) => {
                     let discrete = self.discrete(&mixed.discrete);
-                    Draft::Mixed { continuous: self.blocks(&mixed.continuous), discrete }
+                    BlockDraft::Mixed { continuous: self.blocks(&mixed.continuous), discrete }
                 }
-                Block::Assign(_) => unreachable!("taken above"),
+                BltBlock::Assign(_) => unreachable!("taken above"),
             };
             self.follow(&draft);
             drafts.push(draft);
@@ -99,31 +99,31 @@ impl<'s, 'a> Drafter<'s, 'a> {
     }
 
     /// Adds an assignment to the last run if that takes it, else to a new one.
-    fn join(&mut self, drafts: &mut Vec<Draft>, moved: bool, target: Target, shaped: &Shaped) {
+    fn join(&mut self, drafts: &mut Vec<BlockDraft>, moved: bool, target: AssignTarget, shaped: &KernelExpression) {
         let modes = self.is_mode(target.unknown);
-        if !matches!(drafts.last(), Some(Draft::Assign(run)) if run.moved == moved && run.takes(modes, shaped)) {
-            drafts.push(Draft::Assign(AssignDraft { modes, moved, ..AssignDraft::default() }));
+        if !matches!(drafts.last(), Some(BlockDraft::Assign(run)) if run.moved == moved && run.takes(modes, shaped)) {
+            drafts.push(BlockDraft::Assign(AssignDraft { modes, moved, ..AssignDraft::default() }));
         }
-        if let Some(Draft::Assign(run)) = drafts.last_mut() {
+        if let Some(BlockDraft::Assign(run)) = drafts.last_mut() {
             run.add(target, shaped, self.shaper);
         }
     }
 
-    fn moves(&self, inputs: &[Slot]) -> bool {
+    fn moves(&self, inputs: &[ValueSlot]) -> bool {
         !self.moved.is_empty() && inputs.iter().any(|input| self.moved.contains(input))
     }
 
     /// Notes what a loop passes on; of loops through discrete equations all moves.
-    fn follow(&mut self, draft: &Draft) {
+    fn follow(&mut self, draft: &BlockDraft) {
         match draft {
-            Draft::Loop(l) if !self.moves(l.residual.slots()) => {}
+            BlockDraft::Loop(l) if !self.moves(l.residual.slots()) => {}
             _ => draft.computes(&mut |made| {
                 self.moved.insert(made);
             }),
         }
     }
 
-    fn discrete(&mut self, assigns: &[Assign]) -> Vec<AssignDraft> {
+    fn discrete(&mut self, assigns: &[ExplicitAssignment]) -> Vec<AssignDraft> {
         let mut runs: Vec<AssignDraft> = Vec::new();
         for assign in assigns {
             let (target, shaped) = self.assign(assign);
@@ -144,21 +144,21 @@ impl<'s, 'a> Drafter<'s, 'a> {
         matches!(unknown, Unknown::Var(v) if self.modes.contains(&v))
     }
 
-    fn assign(&mut self, assign: &Assign) -> (Target, Shaped) {
+    fn assign(&mut self, assign: &ExplicitAssignment) -> (AssignTarget, KernelExpression) {
         (target(assign, self.shaper), self.shaper.shape(assign.value, &self.rules))
     }
 }
 
-impl Draft {
+impl BlockDraft {
     /// Calls `visit` for the slot of every unknown.
-    fn computes(&self, visit: &mut impl FnMut(Slot)) {
+    fn computes(&self, visit: &mut impl FnMut(ValueSlot)) {
         match self {
-            Draft::Assign(run) => run.targets.iter().for_each(|t| visit(slot(t.slot))),
-            Draft::Loop(l) => {
+            BlockDraft::Assign(run) => run.targets.iter().for_each(|t| visit(slot(t.slot))),
+            BlockDraft::Loop(l) => {
                 l.code.tearing_slots.iter().for_each(|&s| visit(slot(s)));
                 l.code.inner.iter().for_each(|t| visit(slot(t.slot)));
             }
-            Draft::Mixed { continuous, discrete } => {
+            BlockDraft::Mixed { continuous, discrete } => {
                 continuous.iter().for_each(|draft| draft.computes(visit));
                 discrete.iter().flat_map(|run| &run.targets).for_each(|t| visit(slot(t.slot)));
             }
@@ -168,35 +168,35 @@ impl Draft {
 
 impl AssignDraft {
     /// Whether an assignment may join.
-    fn takes(&self, modes: bool, shaped: &Shaped) -> bool {
+    fn takes(&self, modes: bool, shaped: &KernelExpression) -> bool {
         self.modes == modes && !(modes && shaped.inputs.iter().any(|input| self.slots.contains(input)))
     }
 
-    fn add(&mut self, target: Target, shaped: &Shaped, shaper: &mut Shaper) {
+    fn add(&mut self, target: AssignTarget, shaped: &KernelExpression, shaper: &mut KernelShaper) {
         self.defs.define(&mut shaper.kernels, slot(target.slot), shaped);
         self.slots.insert(slot(target.slot));
         self.targets.push(target);
     }
 
-    fn assemble(self, order: Order, assembler: &mut Assembler) -> AssignCode {
+    fn assemble(self, order: DefinitionOrder, assembler: &mut ProgramAssembler) -> AssignCode {
         AssignCode { program: assembler.assemble(&self.defs, order, None), targets: self.targets }
     }
 }
 
-fn target(assign: &Assign, shaper: &Shaper) -> Target {
-    let &Assign { unknown, value, equation } = assign;
-    Target { unknown, slot: shaper.layout.unknown(unknown), equation, value }
+fn target(assign: &ExplicitAssignment, shaper: &KernelShaper) -> AssignTarget {
+    let &ExplicitAssignment { unknown, value, equation } = assign;
+    AssignTarget { unknown, slot: shaper.layout.unknown(unknown), equation, value }
 }
 
-fn draft_loop(l: &Loop, rules: &Rules, shaper: &mut Shaper) -> LoopDraft {
+fn draft_loop(l: &AlgebraicLoop, rules: &ShapingRules, shaper: &mut KernelShaper) -> LoopDraft {
     let one = shaper.layout.number(1.0);
-    let mut residual = Defs::default();
+    let mut residual = KernelDefinitions::default();
     let mut jacobian = Differentials::default();
     let tearing_slots: Vec<usize> = l.tearing.iter().map(|&unknown| shaper.layout.unknown(unknown)).collect();
     for (column, &tearing) in (0..).zip(&tearing_slots) {
         jacobian.seed(slot(tearing), column, one);
     }
-    let inner: Vec<Target> = l.inner.iter().map(|assign| target(assign, shaper)).collect();
+    let inner: Vec<AssignTarget> = l.inner.iter().map(|assign| target(assign, shaper)).collect();
     let first = shaper.layout.work(l.residuals.len());
     let residual_slots: Vec<usize> = (0..l.residuals.len()).map(|k| first as usize + k).collect();
     let definitions = inner.iter().map(|t| (t.value, t.slot, true));
@@ -222,35 +222,39 @@ fn draft_loop(l: &Loop, rules: &Rules, shaper: &mut Shaper) -> LoopDraft {
     LoopDraft { code, residual, jacobian }
 }
 
-fn loop_matrix(jacobian: &Differentials, residuals: &[usize], shaper: &mut Shaper) -> (Pattern, Vec<usize>) {
+fn loop_matrix(
+    jacobian: &Differentials,
+    residuals: &[usize],
+    shaper: &mut KernelShaper,
+) -> (SparsityPattern, Vec<usize>) {
     let zero = shaper.layout.number(0.0);
     let mut entries = Vec::new();
     for (row, &residual) in (0..).zip(residuals) {
         let gradient = jacobian.gradient(slot(residual)).iter();
-        entries.extend(gradient.map(|&(column, plus)| Entry { column, row, plus, minus: zero }));
+        entries.extend(gradient.map(|&(column, plus)| JacobianEntry { column, row, plus, minus: zero }));
     }
     let (pattern, slots) = compress(residuals.len(), entries, zero);
     (pattern, slots.into_iter().map(|(plus, _)| plus as usize).collect())
 }
 
 /// Makes the programs.
-pub fn assemble(drafts: Vec<Draft>, assembler: &mut Assembler) -> Vec<BlockCode> {
+pub fn assemble(drafts: Vec<BlockDraft>, assembler: &mut ProgramAssembler) -> Vec<BlockCode> {
     drafts.into_iter().map(|draft| assemble_one(draft, assembler)).collect()
 }
 
-fn assemble_one(draft: Draft, assembler: &mut Assembler) -> BlockCode {
+fn assemble_one(draft: BlockDraft, assembler: &mut ProgramAssembler) -> BlockCode {
     match draft {
-        Draft::Assign(run) => BlockCode::Assign(run.assemble(Order::Dependency, assembler)),
-        Draft::Loop(l) => {
+        BlockDraft::Assign(run) => BlockCode::Assign(run.assemble(DefinitionOrder::Dependency, assembler)),
+        BlockDraft::Loop(l) => {
             let LoopDraft { mut code, residual, jacobian } = *l;
-            code.residual = assembler.assemble(&residual, Order::Dependency, None);
+            code.residual = assembler.assemble(&residual, DefinitionOrder::Dependency, None);
             let Differentials { defs, products, .. } = jacobian;
-            code.jacobian = assembler.assemble(&defs, Order::Dependency, Some(products));
+            code.jacobian = assembler.assemble(&defs, DefinitionOrder::Dependency, Some(products));
             BlockCode::Loop(Box::new(code))
         }
-        Draft::Mixed { continuous, discrete } => BlockCode::Mixed(Box::new(MixedCode {
+        BlockDraft::Mixed { continuous, discrete } => BlockCode::Mixed(Box::new(MixedCode {
             continuous: assemble(continuous, assembler),
-            discrete: discrete.into_iter().map(|run| run.assemble(Order::Given, assembler)).collect(),
+            discrete: discrete.into_iter().map(|run| run.assemble(DefinitionOrder::Given, assembler)).collect(),
         })),
     }
 }

@@ -4,13 +4,13 @@
 //! computed inside it, everything else before. Cheap branches are both computed and one is selected; no operation on
 //! floating-point numbers traps.
 
-use bramah_expr::math::Power;
-use bramah_expr::{Binary, ExprId, Exprs, FunctionId, Node, Rel, Unary};
+use bramah_expr::math::PowerMethod;
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, FunctionId, RelationalOp, UnaryFunction};
 use rustc_hash::FxHashMap;
 
 /// Where an argument comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Operand {
+pub enum RegisterOperand {
     /// An input of the kernel, or a slot: what the numbers of `Node::Var` mean to whoever made the expressions.
     Input(u32),
     /// A number, by its bits.
@@ -21,37 +21,37 @@ pub enum Operand {
 
 /// One step; each register is written once.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Step {
+pub enum CodeStep {
     /// A function of one argument.
-    Unary(Unary, u32, Operand),
+    Unary(UnaryFunction, u32, RegisterOperand),
     /// A function of two arguments; never `Pow` with a whole or root exponent, those are written out.
-    Binary(Binary, u32, Operand, Operand),
+    Binary(BinaryFunction, u32, RegisterOperand, RegisterOperand),
     /// 1 when the relation holds, else 0.
-    Rel(Rel, u32, Operand, Operand),
+    Rel(RelationalOp, u32, RegisterOperand, RegisterOperand),
     /// `dst = if c <> 0 then a else b`, both at hand.
-    Select { dst: u32, c: Operand, a: Operand, b: Operand },
+    Select { dst: u32, c: RegisterOperand, a: RegisterOperand, b: RegisterOperand },
     /// The same, computing only the chosen one.
-    Branch { dst: u32, c: Operand, then: Branch, otherwise: Branch },
+    Branch { dst: u32, c: RegisterOperand, then: CodeBranch, otherwise: CodeBranch },
     /// Outputs of a user function: number of the output and register.
-    Call { function: FunctionId, args: Vec<Operand>, outputs: Vec<(u32, u32)> },
+    Call { function: FunctionId, args: Vec<RegisterOperand>, outputs: Vec<(u32, u32)> },
 }
 
-/// One side of a [`Step::Branch`].
+/// One side of a [`CodeStep::Branch`].
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Branch {
+pub struct CodeBranch {
     /// What only this side needs.
-    pub steps: Vec<Step>,
+    pub steps: Vec<CodeStep>,
     /// The value; `None` only while the branch is being built.
-    pub value: Option<Operand>,
+    pub value: Option<RegisterOperand>,
 }
 
 /// The code of a kernel.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Code {
+pub struct KernelCode {
     /// In order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<CodeStep>,
     /// The value of each output.
-    pub outputs: Vec<Operand>,
+    pub outputs: Vec<RegisterOperand>,
     /// Number of registers.
     pub registers: u32,
     /// Number of nodes, for limits on size.
@@ -62,66 +62,66 @@ pub struct Code {
 const WORTH_A_JUMP: u32 = 12;
 
 /// The cost of one node, in additions.
-fn node_cost(node: Node) -> u32 {
+fn node_cost(node: ExprNode) -> u32 {
     match node {
-        Node::Unary(Unary::Neg | Unary::Not | Unary::Abs | Unary::Floor, _) => 1,
-        Node::Unary(Unary::Sqrt | Unary::Sign, _) => 4,
-        Node::Unary(..) | Node::Binary(Binary::Pow | Binary::Atan2, ..) => 20,
-        Node::Binary(Binary::Div, ..) => 4,
-        Node::Binary(..) | Node::Rel(..) | Node::If(..) => 1,
-        Node::Call(..) => 1000,
+        ExprNode::Unary(UnaryFunction::Neg | UnaryFunction::Not | UnaryFunction::Abs | UnaryFunction::Floor, _) => 1,
+        ExprNode::Unary(UnaryFunction::Sqrt | UnaryFunction::Sign, _) => 4,
+        ExprNode::Unary(..) | ExprNode::Binary(BinaryFunction::Pow | BinaryFunction::Atan2, ..) => 20,
+        ExprNode::Binary(BinaryFunction::Div, ..) => 4,
+        ExprNode::Binary(..) | ExprNode::Rel(..) | ExprNode::If(..) => 1,
+        ExprNode::Call(..) => 1000,
         _ => 0,
     }
 }
 
-impl Code {
+impl KernelCode {
     /// Code that computes `outputs`. Leaves are `Node::Var` (an input) and `Node::Num`.
-    pub fn new(pool: &Exprs, outputs: &[ExprId]) -> Code {
+    pub fn new(pool: &Exprs, outputs: &[ExprId]) -> KernelCode {
         let nodes = pool.reachable(outputs, |_| true);
-        let mut builder = Builder::new(pool, &nodes);
+        let mut builder = CodeBuilder::new(pool, &nodes);
         builder.assign_regions(outputs);
         builder.fill_regions();
         let steps = builder.emit(0);
         let outputs = outputs.iter().map(|&e| builder.operand(e)).collect();
-        Code { steps, outputs, registers: builder.registers, size: nodes.len() }
+        KernelCode { steps, outputs, registers: builder.registers, size: nodes.len() }
     }
 }
 
 /// A place in the code: the whole, or one side of a branch.
 #[derive(Clone, Copy)]
-struct Region {
+struct CodeRegion {
     parent: u32,
     depth: u32,
 }
 
 const UNUSED: u32 = u32::MAX;
 
-struct Builder<'a> {
+struct CodeBuilder<'a> {
     pool: &'a Exprs,
     nodes: &'a [ExprId],
     index: FxHashMap<ExprId, u32>,
     /// Per node, its region.
     region: Vec<u32>,
-    regions: Vec<Region>,
+    regions: Vec<CodeRegion>,
     /// Per node, the regions of its branches, if it is an `if` worth a jump.
     branches: FxHashMap<u32, (u32, u32)>,
     contents: Vec<Vec<u32>>,
-    operands: Vec<Operand>,
-    calls: FxHashMap<(u32, Node), usize>,
+    operands: Vec<RegisterOperand>,
+    calls: FxHashMap<(u32, ExprNode), usize>,
     registers: u32,
 }
 
-impl<'a> Builder<'a> {
+impl<'a> CodeBuilder<'a> {
     fn new(pool: &'a Exprs, nodes: &'a [ExprId]) -> Self {
-        Builder {
+        CodeBuilder {
             pool,
             nodes,
             index: nodes.iter().copied().zip(0..).collect(),
             region: vec![UNUSED; nodes.len()],
-            regions: vec![Region { parent: 0, depth: 0 }],
+            regions: vec![CodeRegion { parent: 0, depth: 0 }],
             branches: FxHashMap::default(),
             contents: Vec::new(),
-            operands: vec![Operand::Number(0); nodes.len()],
+            operands: vec![RegisterOperand::Number(0); nodes.len()],
             calls: FxHashMap::default(),
             registers: 0,
         }
@@ -136,7 +136,7 @@ impl<'a> Builder<'a> {
         for i in (0..self.nodes.len()).rev() {
             let here = self.region[i];
             match self.pool.node(self.nodes[i]) {
-                Node::If(c, a, b) if self.worth_a_jump(&costs, a, b) => {
+                ExprNode::If(c, a, b) if self.worth_a_jump(&costs, a, b) => {
                     let (then, otherwise) = (self.new_region(here), self.new_region(here));
                     self.branches.insert(u32::try_from(i).expect("fewer than 2^32 nodes"), (then, otherwise));
                     self.used(c, here);
@@ -170,7 +170,7 @@ impl<'a> Builder<'a> {
 
     fn new_region(&mut self, parent: u32) -> u32 {
         let depth = self.regions[parent as usize].depth + 1;
-        self.regions.push(Region { parent, depth });
+        self.regions.push(CodeRegion { parent, depth });
         u32::try_from(self.regions.len() - 1).expect("fewer than 2^32 branches")
     }
 
@@ -202,7 +202,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn operand(&self, e: ExprId) -> Operand {
+    fn operand(&self, e: ExprId) -> RegisterOperand {
         self.operands[self.index[&e] as usize]
     }
 
@@ -211,7 +211,7 @@ impl<'a> Builder<'a> {
         self.registers - 1
     }
 
-    fn emit(&mut self, region: u32) -> Vec<Step> {
+    fn emit(&mut self, region: u32) -> Vec<CodeStep> {
         let mut steps = Vec::new();
         for i in std::mem::take(&mut self.contents[region as usize]) {
             let operand = self.emit_node(region, i, &mut steps);
@@ -220,97 +220,102 @@ impl<'a> Builder<'a> {
         steps
     }
 
-    fn emit_node(&mut self, region: u32, i: u32, steps: &mut Vec<Step>) -> Operand {
+    fn emit_node(&mut self, region: u32, i: u32, steps: &mut Vec<CodeStep>) -> RegisterOperand {
         let pool = self.pool;
         match pool.node(self.nodes[i as usize]) {
-            Node::Var(v) => Operand::Input(v.0),
-            Node::Num(bits) => Operand::Number(bits),
-            Node::Unary(op, a) => {
+            ExprNode::Var(v) => RegisterOperand::Input(v.0),
+            ExprNode::Num(bits) => RegisterOperand::Number(bits),
+            ExprNode::Unary(op, a) => {
                 let a = self.operand(a);
-                self.push(steps, |dst| Step::Unary(op, dst, a))
+                self.push(steps, |dst| CodeStep::Unary(op, dst, a))
             }
-            Node::Binary(Binary::Pow, a, b) => self.emit_power(self.operand(a), self.operand(b), steps),
-            Node::Binary(op, a, b) => {
+            ExprNode::Binary(BinaryFunction::Pow, a, b) => self.emit_power(self.operand(a), self.operand(b), steps),
+            ExprNode::Binary(op, a, b) => {
                 let (a, b) = (self.operand(a), self.operand(b));
-                self.push(steps, |dst| Step::Binary(op, dst, a, b))
+                self.push(steps, |dst| CodeStep::Binary(op, dst, a, b))
             }
-            Node::Rel(rel, a, b) => {
+            ExprNode::Rel(rel, a, b) => {
                 let (a, b) = (self.operand(a), self.operand(b));
-                self.push(steps, |dst| Step::Rel(rel, dst, a, b))
+                self.push(steps, |dst| CodeStep::Rel(rel, dst, a, b))
             }
-            Node::If(c, a, b) => self.emit_if(i, (c, a, b), steps),
-            node @ Node::Call(..) => self.emit_call(region, node, steps),
+            ExprNode::If(c, a, b) => self.emit_if(i, (c, a, b), steps),
+            node @ ExprNode::Call(..) => self.emit_call(region, node, steps),
             other => unreachable!("{other:?} is replaced when shapes are made"),
         }
     }
 
-    fn push(&mut self, steps: &mut Vec<Step>, step: impl FnOnce(u32) -> Step) -> Operand {
+    fn push(&mut self, steps: &mut Vec<CodeStep>, step: impl FnOnce(u32) -> CodeStep) -> RegisterOperand {
         let dst = self.register();
         steps.push(step(dst));
-        Operand::Register(dst)
+        RegisterOperand::Register(dst)
     }
 
-    fn emit_if(&mut self, i: u32, (c, a, b): (ExprId, ExprId, ExprId), steps: &mut Vec<Step>) -> Operand {
+    fn emit_if(&mut self, i: u32, (c, a, b): (ExprId, ExprId, ExprId), steps: &mut Vec<CodeStep>) -> RegisterOperand {
         let condition = self.operand(c);
         let Some(&(then, otherwise)) = self.branches.get(&i) else {
             let (a, b) = (self.operand(a), self.operand(b));
-            return self.push(steps, |dst| Step::Select { dst, c: condition, a, b });
+            return self.push(steps, |dst| CodeStep::Select { dst, c: condition, a, b });
         };
-        let then = Branch { steps: self.emit(then), value: Some(self.operand(a)) };
-        let otherwise = Branch { steps: self.emit(otherwise), value: Some(self.operand(b)) };
-        self.push(steps, |dst| Step::Branch { dst, c: condition, then, otherwise })
+        let then = CodeBranch { steps: self.emit(then), value: Some(self.operand(a)) };
+        let otherwise = CodeBranch { steps: self.emit(otherwise), value: Some(self.operand(b)) };
+        self.push(steps, |dst| CodeStep::Branch { dst, c: condition, then, otherwise })
     }
 
     /// Powers as [`bramah_expr::math::pow`] computes them, written out where the exponent is known.
-    fn emit_power(&mut self, x: Operand, exponent: Operand, steps: &mut Vec<Step>) -> Operand {
+    fn emit_power(
+        &mut self,
+        x: RegisterOperand,
+        exponent: RegisterOperand,
+        steps: &mut Vec<CodeStep>,
+    ) -> RegisterOperand {
         let way = match exponent {
-            Operand::Number(bits) => Power::of(f64::from_bits(bits)),
-            _ => Power::General,
+            RegisterOperand::Number(bits) => PowerMethod::of(f64::from_bits(bits)),
+            _ => PowerMethod::General,
         };
         match way {
-            Power::General => self.push(steps, |dst| Step::Binary(Binary::Pow, dst, x, exponent)),
-            Power::Sqrt => self.push(steps, |dst| Step::Unary(Unary::Sqrt, dst, x)),
-            Power::FourthRoot => {
-                let root = self.push(steps, |dst| Step::Unary(Unary::Sqrt, dst, x));
-                self.push(steps, |dst| Step::Unary(Unary::Sqrt, dst, root))
+            PowerMethod::General => self.push(steps, |dst| CodeStep::Binary(BinaryFunction::Pow, dst, x, exponent)),
+            PowerMethod::Sqrt => self.push(steps, |dst| CodeStep::Unary(UnaryFunction::Sqrt, dst, x)),
+            PowerMethod::FourthRoot => {
+                let root = self.push(steps, |dst| CodeStep::Unary(UnaryFunction::Sqrt, dst, x));
+                self.push(steps, |dst| CodeStep::Unary(UnaryFunction::Sqrt, dst, root))
             }
-            Power::Whole(n) => self.emit_whole_power(x, n, steps),
+            PowerMethod::Whole(n) => self.emit_whole_power(x, n, steps),
         }
     }
 
-    fn emit_whole_power(&mut self, x: Operand, n: i32, steps: &mut Vec<Step>) -> Operand {
-        let one = Operand::Number(1f64.to_bits());
+    fn emit_whole_power(&mut self, x: RegisterOperand, n: i32, steps: &mut Vec<CodeStep>) -> RegisterOperand {
+        let one = RegisterOperand::Number(1f64.to_bits());
         let (mut left, mut square, mut product) = (n.unsigned_abs(), x, None);
         while left > 0 {
             if left & 1 == 1 {
                 product = Some(match product {
                     None => square,
-                    Some(p) => self.push(steps, |dst| Step::Binary(Binary::Mul, dst, p, square)),
+                    Some(p) => self.push(steps, |dst| CodeStep::Binary(BinaryFunction::Mul, dst, p, square)),
                 });
             }
             left >>= 1;
             if left > 0 {
-                square = self.push(steps, |dst| Step::Binary(Binary::Mul, dst, square, square));
+                square = self.push(steps, |dst| CodeStep::Binary(BinaryFunction::Mul, dst, square, square));
             }
         }
         let value = product.unwrap_or(one);
-        if n < 0 { self.push(steps, |dst| Step::Binary(Binary::Div, dst, one, value)) } else { value }
+        if n < 0 { self.push(steps, |dst| CodeStep::Binary(BinaryFunction::Div, dst, one, value)) } else { value }
     }
 
     /// Calls of one function with the same arguments in the same region are one call.
-    fn emit_call(&mut self, region: u32, node: Node, steps: &mut Vec<Step>) -> Operand {
-        let Node::Call(function, output, args) = node else { unreachable!("only calls come here") };
-        let key = (region, Node::Call(function, 0, args));
+    fn emit_call(&mut self, region: u32, node: ExprNode, steps: &mut Vec<CodeStep>) -> RegisterOperand {
+        let ExprNode::Call(function, output, args) = node else { unreachable!("only calls come here") };
+        let key = (region, ExprNode::Call(function, 0, args));
         let dst = self.register();
         if let Some(&position) = self.calls.get(&key)
-            && let Some(Step::Call { outputs, .. }) = steps.get_mut(position)
+            && let Some(CodeStep::Call { outputs, .. }) = steps.get_mut(position)
         {
             outputs.push((output, dst));
-            return Operand::Register(dst);
+            return RegisterOperand::Register(dst);
         }
         let args = self.pool.args(args).iter().map(|&arg| self.operand(arg)).collect();
         self.calls.insert(key, steps.len());
-        steps.push(Step::Call { function, args, outputs: vec![(output, dst)] });
-        Operand::Register(dst)
+        steps.push(CodeStep::Call { function, args, outputs: vec![(output, dst)] });
+        RegisterOperand::Register(dst)
     }
 }

@@ -1,55 +1,55 @@
 //! What `when` clauses do and what `assert`s demand, as slots to be looked at.
 
 use super::continuous::Observables;
-use super::layout::Slot;
-use super::program::{Assembler, Defs, Order};
-use super::shape::{Rules, Shaper};
-use super::{Conditions, Program};
-use bramah_expr::visit::Walk;
-use bramah_expr::{ExprId, Node};
+use super::layout::ValueSlot;
+use super::program::{DefinitionOrder, KernelDefinitions, ProgramAssembler};
+use super::shape::{KernelShaper, ShapingRules};
+use super::{ConditionProgram, Program};
+use bramah_expr::visit::NodeTraversal;
+use bramah_expr::{ExprId, ExprNode};
 use bramah_model::flat::Variability;
-use bramah_model::structure::{ActionKind, Dae};
+use bramah_model::structure::{Dae, EventActionKind};
 use rustc_hash::FxHashMap;
 
 /// Conditions whose definitions are made and whose program is not.
 #[derive(Debug)]
 pub struct ConditionsDraft {
-    defs: Defs,
-    code: Conditions,
+    defs: KernelDefinitions,
+    code: ConditionProgram,
 }
 
 impl ConditionsDraft {
     fn new() -> Self {
-        let code = Conditions { program: Program::default(), holds: Vec::new(), value: Vec::new() };
-        ConditionsDraft { defs: Defs::default(), code }
+        let code = ConditionProgram { program: Program::default(), holds: Vec::new(), value: Vec::new() };
+        ConditionsDraft { defs: KernelDefinitions::default(), code }
     }
 
-    fn define(&mut self, e: ExprId, shaper: &mut Shaper) -> usize {
+    fn define(&mut self, e: ExprId, shaper: &mut KernelShaper) -> usize {
         let inline = FxHashMap::default();
-        let shaped = shaper.shape(e, &Rules { initial: false, inline: &inline, hoist: true });
-        let target: Slot = shaper.layout.work(1);
+        let shaped = shaper.shape(e, &ShapingRules { initial: false, inline: &inline, hoist: true });
+        let target: ValueSlot = shaper.layout.work(1);
         self.defs.define(&mut shaper.kernels, target, &shaped);
         target as usize
     }
 
     /// The conditions with their program, which first computes what `before` computes.
-    pub fn assemble(mut self, before: Option<&Observables>, assembler: &mut Assembler) -> Conditions {
+    pub fn assemble(mut self, before: Option<&Observables>, assembler: &mut ProgramAssembler) -> ConditionProgram {
         let kernels = assembler.kernels();
         let defs = before.map_or_else(|| self.defs.clone(), |before| before.before(kernels, &self.defs));
-        self.code.program = assembler.assemble(&defs, Order::Dependency, None);
+        self.code.program = assembler.assemble(&defs, DefinitionOrder::Dependency, None);
         self.code
     }
 }
 
 /// `dae.actions`: whether they fire, and their values.
-pub fn actions(dae: &Dae, shaper: &mut Shaper) -> ConditionsDraft {
+pub fn actions(dae: &Dae, shaper: &mut KernelShaper) -> ConditionsDraft {
     let mut draft = ConditionsDraft::new();
     for action in &dae.actions {
         let fires = draft.define(action.fires, shaper);
         let value = match &action.kind {
-            ActionKind::Reinit(_, value) => Some(*value),
-            ActionKind::Assert(assert) => Some(assert.condition),
-            ActionKind::Terminate(_) => None,
+            EventActionKind::Reinit(_, value) => Some(*value),
+            EventActionKind::Assert(assert) => Some(assert.condition),
+            EventActionKind::Terminate(_) => None,
         };
         let value = value.map(|value| draft.define(value, shaper));
         draft.code.holds.push(fires);
@@ -60,13 +60,13 @@ pub fn actions(dae: &Dae, shaper: &mut Shaper) -> ConditionsDraft {
 
 /// The entries of `dae.asserts` that speak of parameters alone whose values stand before the start.
 pub fn standing(dae: &Dae) -> Vec<usize> {
-    let mut walk = Walk::default();
+    let mut walk = NodeTraversal::default();
     let mut stands = |condition: ExprId| {
         let mut stands = true;
         walk.each(&dae.exprs, &[condition], |e, node| {
             stands &= match node {
-                Node::Num(_) => true,
-                Node::Var(v) => {
+                ExprNode::Num(_) => true,
+                ExprNode::Var(v) => {
                     let still = dae.variables[v.index()].variability <= Variability::Parameter;
                     still && !dae.free_parameters.contains(&v)
                 }
@@ -80,7 +80,7 @@ pub fn standing(dae: &Dae) -> Vec<usize> {
 }
 
 /// `dae.asserts`: whether they hold.
-pub fn asserts(dae: &Dae, shaper: &mut Shaper) -> ConditionsDraft {
+pub fn asserts(dae: &Dae, shaper: &mut KernelShaper) -> ConditionsDraft {
     let mut draft = ConditionsDraft::new();
     for assert in &dae.asserts {
         let holds = draft.define(assert.condition, shaper);

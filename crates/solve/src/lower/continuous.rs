@@ -1,11 +1,11 @@
 //! The IDA system: definitions of residual, Jacobian and zero crossings, and of what is observed.
 
-use super::eliminate::{Fate, Plan};
-use super::jacobian::{Differentials, Entry, compress};
-use super::layout::{Layout, Slot, slot};
-use super::program::Defs;
-use super::shape::{Kernels, Rules, Shaper};
-use super::{Integral, Pattern, RowKind};
+use super::eliminate::{AssignmentFate, ContinuousPlan};
+use super::jacobian::{Differentials, JacobianEntry, compress};
+use super::layout::{ValueLayout, ValueSlot, slot};
+use super::program::KernelDefinitions;
+use super::shape::{KernelShaper, KernelTable, ShapingRules};
+use super::{ConservedIntegral, ResidualRowKind, SparsityPattern};
 use bramah_expr::VarId;
 use bramah_model::structure::{CrossingKind, Dae, Unknown};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -14,33 +14,33 @@ use rustc_hash::{FxHashMap, FxHashSet};
 #[derive(Debug)]
 pub struct ContinuousDraft {
     /// Locals and right sides of rows.
-    pub residual: Defs,
+    pub residual: KernelDefinitions,
     /// Per row, the slot of its right side.
-    pub row_slots: Vec<Slot>,
+    pub row_slots: Vec<ValueSlot>,
     /// The same with derivatives.
     pub jacobian: Differentials,
     /// Structure of the matrix.
-    pub pattern: Pattern,
+    pub pattern: SparsityPattern,
     /// Per entry, the slots of what is added and subtracted.
-    pub entries: Vec<(Slot, Slot)>,
+    pub entries: Vec<(ValueSlot, ValueSlot)>,
 }
 
 /// Makes the definitions of residual and Jacobian.
-pub fn draft(plan: &Plan, shaper: &mut Shaper) -> ContinuousDraft {
-    let rules = Rules { initial: false, inline: &plan.inline, hoist: true };
-    let (mut residual, mut jacobian) = (Defs::default(), Differentials::default());
+pub fn draft(plan: &ContinuousPlan, shaper: &mut KernelShaper) -> ContinuousDraft {
+    let rules = ShapingRules { initial: false, inline: &plan.inline, hoist: true };
+    let (mut residual, mut jacobian) = (KernelDefinitions::default(), Differentials::default());
     seed(plan, &mut jacobian, &mut shaper.layout);
-    let mut define = |value, target, is_read, shaper: &mut Shaper| {
+    let mut define = |value, target, is_read, shaper: &mut KernelShaper| {
         let shaped = shaper.shape(value, &rules);
         residual.define(&mut shaper.kernels, target, &shaped);
         jacobian.define(shaper, target, &shaped, is_read);
     };
-    let mut targets: Vec<Slot> = Vec::with_capacity(plan.explicit.len());
+    let mut targets: Vec<ValueSlot> = Vec::with_capacity(plan.explicit.len());
     for (i, assign) in plan.explicit.iter().enumerate() {
         let own = slot(shaper.layout.unknown(assign.unknown));
-        let target = if plan.fates[i] == Fate::Kept { shaper.layout.work(1) } else { own };
-        if let Fate::Local | Fate::Kept = plan.fates[i] {
-            let is_read = plan.fates[i] == Fate::Local && plan.users[i] > 0;
+        let target = if plan.fates[i] == AssignmentFate::Kept { shaper.layout.work(1) } else { own };
+        if let AssignmentFate::Local | AssignmentFate::Kept = plan.fates[i] {
+            let is_read = plan.fates[i] == AssignmentFate::Local && plan.users[i] > 0;
             define(assign.value, target, is_read, shaper);
         }
         targets.push(target);
@@ -60,37 +60,37 @@ pub fn draft(plan: &Plan, shaper: &mut Shaper) -> ContinuousDraft {
     ContinuousDraft { residual, row_slots, jacobian, pattern, entries }
 }
 
-fn seed(plan: &Plan, jacobian: &mut Differentials, layout: &mut Layout) {
+fn seed(plan: &ContinuousPlan, jacobian: &mut Differentials, layout: &mut ValueLayout) {
     let one = layout.number(1.0);
     for (j, column) in (0..).zip(&plan.columns) {
         jacobian.seed(slot(layout.var(column.variable)), j, one);
     }
     for &(column, der) in &plan.torn {
-        jacobian.seed(der, slot(column), slot(Layout::CJ));
+        jacobian.seed(der, slot(column), slot(ValueLayout::CJ));
     }
 }
 
 /// `der(x) - value` and `v - value` turn the sign of the value's derivatives.
 fn matrix(
-    plan: &Plan,
-    row_slots: &[Slot],
+    plan: &ContinuousPlan,
+    row_slots: &[ValueSlot],
     jacobian: &Differentials,
-    layout: &mut Layout,
-) -> (Pattern, Vec<(Slot, Slot)>) {
+    layout: &mut ValueLayout,
+) -> (SparsityPattern, Vec<(ValueSlot, ValueSlot)>) {
     let (zero, one) = (layout.number(0.0), layout.number(1.0));
     let mut entries = Vec::new();
     for (i, (row, &place)) in (0..).zip(plan.rows.iter().zip(row_slots)) {
         let diagonal = match row.kind {
-            RowKind::Derivative => Some(slot(Layout::CJ)),
-            RowKind::Explicit => Some(one),
-            RowKind::Follows(_) => Some(one),
-            RowKind::Residual => None,
+            ResidualRowKind::Derivative => Some(slot(ValueLayout::CJ)),
+            ResidualRowKind::Explicit => Some(one),
+            ResidualRowKind::Follows(_) => Some(one),
+            ResidualRowKind::Residual => None,
         };
-        let own = if let RowKind::Follows(column) = row.kind { slot(column) } else { i };
-        entries.extend(diagonal.map(|plus| Entry { column: own, row: i, plus, minus: zero }));
+        let own = if let ResidualRowKind::Follows(column) = row.kind { slot(column) } else { i };
+        entries.extend(diagonal.map(|plus| JacobianEntry { column: own, row: i, plus, minus: zero }));
         for &(column, derivative) in jacobian.gradient(place) {
             let (plus, minus) = if diagonal.is_some() { (zero, derivative) } else { (derivative, zero) };
-            entries.push(Entry { column, row: i, plus, minus });
+            entries.push(JacobianEntry { column, row: i, plus, minus });
         }
     }
     compress(plan.columns.len(), entries, zero)
@@ -100,18 +100,18 @@ fn matrix(
 #[derive(Clone, Debug, Default)]
 pub struct Observables {
     /// Explicit assignments in order (but not those that IDA keeps), then aliases.
-    pub defs: Defs,
-    producer: FxHashMap<Slot, u32>,
+    pub defs: KernelDefinitions,
+    producer: FxHashMap<ValueSlot, u32>,
 }
 
 impl Observables {
     /// The definitions of all explicit variables and aliases.
-    pub fn new(dae: &Dae, plan: &Plan, shaper: &mut Shaper) -> Observables {
+    pub fn new(dae: &Dae, plan: &ContinuousPlan, shaper: &mut KernelShaper) -> Observables {
         let mut observables = Observables::default();
         let inline = FxHashMap::default();
-        let rules = Rules { initial: false, inline: &inline, hoist: true };
+        let rules = ShapingRules { initial: false, inline: &inline, hoist: true };
         for (assign, &fate) in plan.explicit.iter().zip(&plan.fates) {
-            if fate != Fate::Kept {
+            if fate != AssignmentFate::Kept {
                 let target = slot(shaper.layout.unknown(assign.unknown));
                 let shaped = shaper.shape(assign.value, &rules);
                 observables.producer.insert(target, slot(observables.defs.len()));
@@ -129,9 +129,9 @@ impl Observables {
     }
 
     /// The definitions that these slots need, in order.
-    pub fn needed(&self, kernels: &Kernels, slots: impl IntoIterator<Item = Slot>) -> Defs {
+    pub fn needed(&self, kernels: &KernelTable, slots: impl IntoIterator<Item = ValueSlot>) -> KernelDefinitions {
         let mut wanted: FxHashSet<u32> = FxHashSet::default();
-        let mut stack: Vec<Slot> = slots.into_iter().collect();
+        let mut stack: Vec<ValueSlot> = slots.into_iter().collect();
         while let Some(slot) = stack.pop() {
             if let Some(&i) = self.producer.get(&slot)
                 && wanted.insert(i)
@@ -145,7 +145,7 @@ impl Observables {
     }
 
     /// The same definitions with all those before them that they need.
-    pub fn before(&self, kernels: &Kernels, defs: &Defs) -> Defs {
+    pub fn before(&self, kernels: &KernelTable, defs: &KernelDefinitions) -> KernelDefinitions {
         let read = (0..defs.len()).flat_map(|i| defs.get(kernels, i).1.iter().copied());
         let mut all = self.needed(kernels, read);
         all.append(defs);
@@ -157,28 +157,28 @@ impl Observables {
 #[derive(Debug, Default)]
 pub struct QuantitiesDraft {
     /// Both, from the slots of variables.
-    pub defs: Defs,
+    pub defs: KernelDefinitions,
     /// Each quantity by itself.
-    pub alone: Vec<Defs>,
+    pub alone: Vec<KernelDefinitions>,
     /// The quantities.
-    pub integrals: Vec<Integral>,
+    pub integrals: Vec<ConservedIntegral>,
 }
 
 /// The definitions of conserved quantities; rates go into the slots of their derivatives.
-pub fn quantities(plan: &Plan, shaper: &mut Shaper) -> QuantitiesDraft {
+pub fn quantities(plan: &ContinuousPlan, shaper: &mut KernelShaper) -> QuantitiesDraft {
     let mut draft = QuantitiesDraft::default();
     let inline = FxHashMap::default();
-    let rules = Rules { initial: false, inline: &inline, hoist: true };
+    let rules = ShapingRules { initial: false, inline: &inline, hoist: true };
     for &(conserved, column, state) in &plan.integrals {
         let (slot, slope) = (shaper.layout.work(1), shaper.layout.work(1));
         let rate = self::slot(shaper.layout.unknown(Unknown::Der(conserved.variable)));
         let [quantity, growth] = [conserved.quantity, conserved.rate].map(|e| shaper.shape(e, &rules));
-        let mut alone = Defs::default();
+        let mut alone = KernelDefinitions::default();
         alone.define(&mut shaper.kernels, slot, &quantity);
         draft.defs.append(&alone);
         draft.defs.define(&mut shaper.kernels, rate, &growth);
         draft.alone.push(alone);
-        draft.integrals.push(Integral { column, state, slot, slope, entry: None, row: Vec::new() });
+        draft.integrals.push(ConservedIntegral { column, state, slot, slope, entry: None, row: Vec::new() });
     }
     draft
 }
@@ -189,16 +189,16 @@ pub struct CrossingsDraft {
     /// Which entries of `dae.crossings` have one.
     pub list: Vec<usize>,
     /// The root functions from the slots of variables.
-    pub defs: Defs,
+    pub defs: KernelDefinitions,
     /// The slot of each root function.
-    pub slots: Vec<Slot>,
+    pub slots: Vec<ValueSlot>,
 }
 
 /// The definitions of the root functions.
-pub fn crossings(dae: &Dae, shaper: &mut Shaper) -> CrossingsDraft {
+pub fn crossings(dae: &Dae, shaper: &mut KernelShaper) -> CrossingsDraft {
     let mut draft = CrossingsDraft::default();
     let inline = FxHashMap::default();
-    let rules = Rules { initial: false, inline: &inline, hoist: true };
+    let rules = ShapingRules { initial: false, inline: &inline, hoist: true };
     for (i, crossing) in dae.crossings.iter().enumerate() {
         let (e, inputs) = match crossing.kind {
             CrossingKind::Relation(_, left, right) => {

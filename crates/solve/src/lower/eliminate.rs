@@ -8,12 +8,12 @@
 //! A conserved quantity is an unknown beside the states: its row is its rate, and the row of the state that follows from
 //! it says what the quantity is by the states.
 
-use super::layout::{Layout, Slot, slot};
-use super::{Column, ColumnRole, Row, RowKind};
-use bramah_expr::visit::Walk;
+use super::layout::{ValueLayout, ValueSlot, slot};
+use super::{ColumnRole, ResidualRow, ResidualRowKind, UnknownColumn};
+use bramah_expr::visit::NodeTraversal;
 use bramah_expr::{ExprId, VarId};
-use bramah_model::flat::Type;
-use bramah_model::structure::{Assign, Block, Conserved, Dae, Unknown};
+use bramah_model::flat::ScalarType;
+use bramah_model::structure::{BltBlock, ConservedQuantity, Dae, ExplicitAssignment, Unknown};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Systems with at most this many unknowns keep no explicit variable.
@@ -24,7 +24,7 @@ const INLINED_SIZE: usize = 400;
 
 /// What becomes of an explicit assignment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Fate {
+pub enum AssignmentFate {
     /// No row needs it; only outputs do.
     Unused,
     /// Its definition stands in its user's.
@@ -37,31 +37,31 @@ pub enum Fate {
 
 /// The continuous system as IDA is to see it.
 #[derive(Clone, Debug, Default)]
-pub struct Plan {
+pub struct ContinuousPlan {
     /// All explicit assignments, in order.
-    pub explicit: Vec<Assign>,
+    pub explicit: Vec<ExplicitAssignment>,
     /// Per explicit assignment.
-    pub fates: Vec<Fate>,
+    pub fates: Vec<AssignmentFate>,
     /// The definitions that stand in for their variables, by slot.
-    pub inline: FxHashMap<Slot, ExprId>,
+    pub inline: FxHashMap<ValueSlot, ExprId>,
     /// The unknowns of IDA.
-    pub columns: Vec<Column>,
+    pub columns: Vec<UnknownColumn>,
     /// One row per column.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ResidualRow>,
     /// Per row, the explicit assignment it belongs to; `None` for the residual of a loop.
     pub row_explicit: Vec<Option<usize>>,
     /// Per explicit assignment, how many needed ones and residuals read it.
     pub users: Vec<u32>,
     /// States whose derivative is a tearing variable: column and slot of the derivative.
-    pub torn: Vec<(usize, Slot)>,
+    pub torn: Vec<(usize, ValueSlot)>,
     /// The quantities that are integrated, with their columns and those of the states that follow.
-    pub integrals: Vec<(Conserved, usize, usize)>,
+    pub integrals: Vec<(ConservedQuantity, usize, usize)>,
 }
 
 /// Sorts explicit assignments of `dae.continuous` into their fates, and gives every unknown its row. With `keep`, some
 /// explicit variables of large systems become unknowns; with `conserve`, conserved quantities do.
-pub fn plan(dae: &Dae, layout: &Layout, keep: bool, conserve: bool) -> Plan {
-    let mut planner = Planner::new(dae, layout);
+pub fn plan(dae: &Dae, layout: &ValueLayout, keep: bool, conserve: bool) -> ContinuousPlan {
+    let mut planner = ContinuousPlanner::new(dae, layout);
     planner.collect(&dae.continuous);
     if conserve {
         planner.choose_conserved();
@@ -80,51 +80,51 @@ const NOBODY: u32 = u32::MAX;
 
 /// What a row is made of that is no explicit assignment.
 #[derive(Clone, Copy)]
-enum Root {
+enum RowOrigin {
     /// The residual of a loop, with its equation and its unknown; whether that is the only one of its loop.
     Residual(ExprId, u32, Unknown, bool),
     /// The rate of a conserved quantity.
-    Rate(Conserved),
+    Rate(ConservedQuantity),
     /// The quantity itself.
-    Quantity(Conserved),
+    Quantity(ConservedQuantity),
 }
 
-impl Root {
+impl RowOrigin {
     fn value(&self) -> ExprId {
         match self {
-            Root::Residual(value, ..) => *value,
-            Root::Rate(c) => c.rate,
-            Root::Quantity(c) => c.quantity,
+            RowOrigin::Residual(value, ..) => *value,
+            RowOrigin::Rate(c) => c.rate,
+            RowOrigin::Quantity(c) => c.quantity,
         }
     }
 }
 
-struct Planner<'a> {
+struct ContinuousPlanner<'a> {
     dae: &'a Dae,
-    layout: &'a Layout,
-    explicit: Vec<Assign>,
-    roots: Vec<Root>,
+    layout: &'a ValueLayout,
+    explicit: Vec<ExplicitAssignment>,
+    roots: Vec<RowOrigin>,
     /// Per slot, the explicit assignment that computes it.
     producer: Vec<u32>,
     /// Per explicit assignment, then per residual, the explicit assignments it reads.
     reads: Vec<Vec<u32>>,
     /// Per explicit assignment, then per residual, other slots it reads.
-    leaves: Vec<Vec<Slot>>,
+    leaves: Vec<Vec<ValueSlot>>,
     needed: Vec<bool>,
     users: Vec<u32>,
-    fates: Vec<Fate>,
-    columns: Vec<Column>,
+    fates: Vec<AssignmentFate>,
+    columns: Vec<UnknownColumn>,
     /// Per slot, the column whose value or derivative it holds.
-    seed: FxHashMap<Slot, u32>,
-    torn: Vec<(usize, Slot)>,
+    seed: FxHashMap<ValueSlot, u32>,
+    torn: Vec<(usize, ValueSlot)>,
     /// States that follow from a quantity and whose derivatives no explicit assignment gives.
     followers_torn: Vec<VarId>,
-    integrals: Vec<(Conserved, usize, usize)>,
+    integrals: Vec<(ConservedQuantity, usize, usize)>,
 }
 
-impl<'a> Planner<'a> {
-    fn new(dae: &'a Dae, layout: &'a Layout) -> Self {
-        Planner {
+impl<'a> ContinuousPlanner<'a> {
+    fn new(dae: &'a Dae, layout: &'a ValueLayout) -> Self {
+        ContinuousPlanner {
             dae,
             layout,
             explicit: Vec::new(),
@@ -143,24 +143,24 @@ impl<'a> Planner<'a> {
         }
     }
 
-    fn collect(&mut self, blocks: &[Block]) {
+    fn collect(&mut self, blocks: &[BltBlock]) {
         for block in blocks {
             match block {
-                Block::Assign(assign) => self.add_explicit(*assign),
-                Block::Loop(l) => {
+                BltBlock::Assign(assign) => self.add_explicit(*assign),
+                BltBlock::Loop(l) => {
                     l.inner.iter().for_each(|&assign| self.add_explicit(assign));
                     let (residuals, lone) = (l.residuals.iter().zip(&l.tearing), l.tearing.len() == 1);
                     let root = |(&(e, equation), &unknown): (&(ExprId, u32), &Unknown)| {
-                        Root::Residual(e, equation, unknown, lone)
+                        RowOrigin::Residual(e, equation, unknown, lone)
                     };
                     self.roots.extend(residuals.map(root));
                 }
-                Block::Mixed(mixed) => self.collect(&mixed.continuous),
+                BltBlock::Mixed(mixed) => self.collect(&mixed.continuous),
             }
         }
     }
 
-    fn add_explicit(&mut self, assign: Assign) {
+    fn add_explicit(&mut self, assign: ExplicitAssignment) {
         self.producer[self.layout.unknown(assign.unknown)] = slot(self.explicit.len());
         self.explicit.push(assign);
     }
@@ -168,8 +168,8 @@ impl<'a> Planner<'a> {
     /// Takes the conserved quantities whose rates do not hang on how fast their own states move, and takes the residuals
     /// that give these derivatives out.
     fn choose_conserved(&mut self) {
-        let lone = |root: &Root| match root {
-            Root::Residual(_, _, Unknown::Der(x), true) => Some(*x),
+        let lone = |root: &RowOrigin| match root {
+            RowOrigin::Residual(_, _, Unknown::Der(x), true) => Some(*x),
             _ => None,
         };
         let torn: FxHashSet<VarId> = self.roots.iter().filter_map(lone).collect();
@@ -188,16 +188,16 @@ impl<'a> Planner<'a> {
                 taken.insert(c.state);
                 self.followers_torn.push(c.state);
             }
-            self.roots.extend([Root::Rate(c), Root::Quantity(c)]);
+            self.roots.extend([RowOrigin::Rate(c), RowOrigin::Quantity(c)]);
         }
         self.roots.retain(|root| lone(root).is_none_or(|x| !taken.contains(&x)));
     }
 
     /// The slots on which an expression depends, through explicit assignments too.
-    fn reached(&self, e: ExprId) -> FxHashSet<Slot> {
-        let mut seen: FxHashSet<Slot> = FxHashSet::default();
+    fn reached(&self, e: ExprId) -> FxHashSet<ValueSlot> {
+        let mut seen: FxHashSet<ValueSlot> = FxHashSet::default();
         let mut open = vec![e];
-        let mut walk = Walk::default();
+        let mut walk = NodeTraversal::default();
         while let Some(e) = open.pop() {
             walk.each(&self.dae.exprs, &[e], |_, node| {
                 if let Some(slot) = self.layout.leaf(node)
@@ -213,9 +213,9 @@ impl<'a> Planner<'a> {
     }
 
     fn find_leaves(&mut self) {
-        let mut walk = Walk::default();
+        let mut walk = NodeTraversal::default();
         let values = self.explicit.iter().map(|assign| assign.value);
-        for e in values.chain(self.roots.iter().map(Root::value)) {
+        for e in values.chain(self.roots.iter().map(RowOrigin::value)) {
             let (mut reads, mut leaves) = (Vec::new(), Vec::new());
             walk.each(&self.dae.exprs, &[e], |_, node| {
                 if let Some(slot) = self.layout.leaf(node) {
@@ -254,14 +254,14 @@ impl<'a> Planner<'a> {
         let mut size = vec![0usize; self.explicit.len()];
         for i in 0..self.explicit.len() {
             let value = self.explicit[i].value;
-            let inlined = self.reads[i].iter().filter(|&&r| self.fates[r as usize] == Fate::Inlined);
+            let inlined = self.reads[i].iter().filter(|&&r| self.fates[r as usize] == AssignmentFate::Inlined);
             size[i] = self.dae.exprs.node_count(value) + inlined.map(|&r| size[r as usize]).sum::<usize>();
             let fate = if !self.needed[i] {
-                Fate::Unused
+                AssignmentFate::Unused
             } else if !self.is_derivative(i) && (self.users[i] == 1 && size[i] <= INLINED_SIZE || size[i] == 1) {
-                Fate::Inlined
+                AssignmentFate::Inlined
             } else {
-                Fate::Local
+                AssignmentFate::Local
             };
             self.fates.push(fate);
         }
@@ -274,15 +274,15 @@ impl<'a> Planner<'a> {
         }
         for k in 0..self.roots.len() {
             match self.roots[k] {
-                Root::Residual(_, _, Unknown::Var(v), _) => self.add_column(v, ColumnRole::Algebraic),
-                Root::Residual(_, _, Unknown::Der(x), _) => self.add_torn(x),
-                Root::Rate(c) => {
+                RowOrigin::Residual(_, _, Unknown::Var(v), _) => self.add_column(v, ColumnRole::Algebraic),
+                RowOrigin::Residual(_, _, Unknown::Der(x), _) => self.add_torn(x),
+                RowOrigin::Rate(c) => {
                     let state = self.seed[&slot(self.layout.var(c.state))] as usize;
                     self.columns[state].role = ColumnRole::Following;
                     self.integrals.push((c, self.columns.len(), state));
                     self.add_column(c.variable, ColumnRole::Quantity);
                 }
-                Root::Quantity(_) => {}
+                RowOrigin::Quantity(_) => {}
             }
         }
         for x in std::mem::take(&mut self.followers_torn) {
@@ -300,7 +300,7 @@ impl<'a> Planner<'a> {
 
     fn add_column(&mut self, variable: VarId, role: ColumnRole) {
         self.seed.insert(slot(self.layout.var(variable)), slot(self.columns.len()));
-        self.columns.push(Column { variable, role });
+        self.columns.push(UnknownColumn { variable, role });
     }
 
     /// The Markowitz count decides: rows x columns against rows + columns + 1.
@@ -314,13 +314,13 @@ impl<'a> Planner<'a> {
         for i in 0..self.explicit.len() {
             let mut span = if self.needed[i] { self.span(i, &spans) } else { Vec::new() };
             let (rows, columns) = (self.users[i] as usize, span.len());
-            if self.fates[i] == Fate::Local
+            if self.fates[i] == AssignmentFate::Local
                 && self.can_be_kept(i)
                 && !in_quantity[i]
                 && rows * columns > rows + columns + 1
             {
                 let Unknown::Var(v) = self.explicit[i].unknown else { unreachable!("derivatives are not kept") };
-                self.fates[i] = Fate::Kept;
+                self.fates[i] = AssignmentFate::Kept;
                 span = vec![slot(self.columns.len())];
                 self.add_column(v, ColumnRole::Algebraic);
             }
@@ -331,7 +331,7 @@ impl<'a> Planner<'a> {
     /// The explicit assignments behind conserved quantities.
     fn in_quantities(&self) -> Vec<bool> {
         let explicit = self.explicit.len();
-        let quantities = (0..self.roots.len()).filter(|&k| matches!(self.roots[k], Root::Quantity(_)));
+        let quantities = (0..self.roots.len()).filter(|&k| matches!(self.roots[k], RowOrigin::Quantity(_)));
         let mut found = vec![false; explicit];
         quantities.flat_map(|k| &self.reads[explicit + k]).for_each(|&i| found[i as usize] = true);
         for i in (0..explicit).rev() {
@@ -344,7 +344,7 @@ impl<'a> Planner<'a> {
 
     fn can_be_kept(&self, i: usize) -> bool {
         match self.explicit[i].unknown {
-            Unknown::Var(v) => self.dae.variables[v.index()].ty == Type::Real,
+            Unknown::Var(v) => self.dae.variables[v.index()].ty == ScalarType::Real,
             Unknown::Der(_) => false,
         }
     }
@@ -360,38 +360,40 @@ impl<'a> Planner<'a> {
         span
     }
 
-    fn finish(self) -> Plan {
-        let mut rows: Vec<Option<(Row, Option<usize>)>> = vec![None; self.columns.len()];
+    fn finish(self) -> ContinuousPlan {
+        let mut rows: Vec<Option<(ResidualRow, Option<usize>)>> = vec![None; self.columns.len()];
         let mut inline = FxHashMap::default();
         for (i, (assign, &fate)) in self.explicit.iter().zip(&self.fates).enumerate() {
-            let &Assign { unknown, value, equation } = assign;
-            if fate == Fate::Inlined {
+            let &ExplicitAssignment { unknown, value, equation } = assign;
+            if fate == AssignmentFate::Inlined {
                 inline.insert(slot(self.layout.unknown(unknown)), value);
             }
             let kind = match (unknown, fate) {
                 (Unknown::Der(x), _) if self.follows(x) => continue,
-                (Unknown::Der(_), _) => RowKind::Derivative,
-                (_, Fate::Kept) => RowKind::Explicit,
+                (Unknown::Der(_), _) => ResidualRowKind::Derivative,
+                (_, AssignmentFate::Kept) => ResidualRowKind::Explicit,
                 _ => continue,
             };
             if let Some(column) = self.column(unknown) {
-                rows[column] = Some((Row { equation, kind, value }, Some(i)));
+                rows[column] = Some((ResidualRow { equation, kind, value }, Some(i)));
             }
         }
         for root in &self.roots {
             let value = root.value();
             let (column, equation, kind) = match *root {
-                Root::Residual(_, equation, unknown, _) => {
-                    (self.column(unknown).expect("tearing unknowns have columns"), equation, RowKind::Residual)
+                RowOrigin::Residual(_, equation, unknown, _) => {
+                    (self.column(unknown).expect("tearing unknowns have columns"), equation, ResidualRowKind::Residual)
                 }
-                Root::Rate(c) => (self.place(c.variable), c.equation, RowKind::Derivative),
-                Root::Quantity(c) => (self.place(c.state), c.equation, RowKind::Follows(self.place(c.variable))),
+                RowOrigin::Rate(c) => (self.place(c.variable), c.equation, ResidualRowKind::Derivative),
+                RowOrigin::Quantity(c) => {
+                    (self.place(c.state), c.equation, ResidualRowKind::Follows(self.place(c.variable)))
+                }
             };
-            rows[column] = Some((Row { equation, kind, value }, None));
+            rows[column] = Some((ResidualRow { equation, kind, value }, None));
         }
         let rows = rows.into_iter().map(|row| row.expect("the DAE determines every state and tearing unknown"));
         let (rows, row_explicit) = rows.unzip();
-        Plan {
+        ContinuousPlan {
             rows,
             row_explicit,
             inline,

@@ -4,17 +4,17 @@
 //! Every operand is a place in the array of values: a slot, the slot of a number, or a place in the scratch region at
 //! the array's end. Scratch places carry [`SCRATCH`] until [`Bytecode::relocate`] knows where that region begins.
 
-use super::code::{Branch, Code, Operand, Step};
-use super::layout::{Layout, Slot, slot};
+use super::code::{CodeBranch, CodeStep, KernelCode, RegisterOperand};
+use super::layout::{ValueLayout, ValueSlot, slot};
 use bramah_expr::function::Function;
-use bramah_expr::{Binary, FunctionId, Rel, Unary, math};
+use bramah_expr::{BinaryFunction, FunctionId, RelationalOp, UnaryFunction, math};
 
 /// Marks a place counted from the beginning of the scratch region.
-pub const SCRATCH: Slot = 1 << 31;
+pub const SCRATCH: ValueSlot = 1 << 31;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-enum Op {
+enum BytecodeOperation {
     Move,
     /// The bits of a number in `a` (low) and `b` (high).
     Number,
@@ -63,33 +63,33 @@ enum Op {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Instruction {
-    op: Op,
-    dst: Slot,
-    a: Slot,
-    b: Slot,
-    c: Slot,
+struct BytecodeInstruction {
+    op: BytecodeOperation,
+    dst: ValueSlot,
+    a: ValueSlot,
+    b: ValueSlot,
+    c: ValueSlot,
 }
 
 #[derive(Clone, Debug)]
 struct CallSite {
     function: FunctionId,
-    args: Vec<Slot>,
-    outputs: Vec<(u32, Slot)>,
+    args: Vec<ValueSlot>,
+    outputs: Vec<(u32, ValueSlot)>,
 }
 
 /// Instructions that compute one kernel.
 #[derive(Clone, Debug, Default)]
 pub struct Bytecode {
-    instructions: Vec<Instruction>,
+    instructions: Vec<BytecodeInstruction>,
     calls: Vec<CallSite>,
     scratch: u32,
 }
 
 impl Bytecode {
     /// Code whose inputs are slots, each output going to the slot in `targets`.
-    pub fn straight(code: &Code, targets: &[Slot], layout: &Layout) -> Bytecode {
-        let mut writer = Writer::new(code, layout, 0, |input| input);
+    pub fn straight(code: &KernelCode, targets: &[ValueSlot], layout: &ValueLayout) -> Bytecode {
+        let mut writer = BytecodeWriter::new(code, layout, 0, |input| input);
         if !writer.reads_any(code, targets) {
             writer.write_in_place(code, targets);
         }
@@ -98,9 +98,9 @@ impl Bytecode {
 
     /// Code whose input number `i` is at scratch place `i`, and whose output number `k` goes to scratch place
     /// `inputs + k`.
-    pub fn looped(code: &Code, inputs: u32, layout: &Layout) -> Bytecode {
-        let targets: Vec<Slot> = (inputs..).take(code.outputs.len()).map(|place| SCRATCH | place).collect();
-        let mut writer = Writer::new(code, layout, inputs + slot(targets.len()), |input| SCRATCH | input);
+    pub fn looped(code: &KernelCode, inputs: u32, layout: &ValueLayout) -> Bytecode {
+        let targets: Vec<ValueSlot> = (inputs..).take(code.outputs.len()).map(|place| SCRATCH | place).collect();
+        let mut writer = BytecodeWriter::new(code, layout, inputs + slot(targets.len()), |input| SCRATCH | input);
         writer.write_in_place(code, &targets);
         writer.finish(code, &targets)
     }
@@ -116,8 +116,8 @@ impl Bytecode {
     }
 
     /// Tells where the scratch region begins.
-    pub fn relocate(&mut self, base: Slot) {
-        let fix = |place: &mut Slot| {
+    pub fn relocate(&mut self, base: ValueSlot) {
+        let fix = |place: &mut ValueSlot| {
             if *place & SCRATCH != 0 {
                 *place = (*place & !SCRATCH) + base;
             }
@@ -125,8 +125,8 @@ impl Bytecode {
         for i in &mut self.instructions {
             fix(&mut i.dst);
             match i.op {
-                Op::Number | Op::Jump | Op::Call => {}
-                Op::JumpIfZero => fix(&mut i.a),
+                BytecodeOperation::Number | BytecodeOperation::Jump | BytecodeOperation::Call => {}
+                BytecodeOperation::JumpIfZero => fix(&mut i.a),
                 _ => [&mut i.a, &mut i.b, &mut i.c].into_iter().for_each(fix),
             }
         }
@@ -144,54 +144,54 @@ impl Bytecode {
             pc += 1;
             let (a, b) = (i.a as usize, i.b as usize);
             let value = match i.op {
-                Op::Move => v[a],
-                Op::Number => f64::from_bits(u64::from(i.b) << 32 | u64::from(i.a)),
-                Op::Neg => -v[a],
-                Op::Not => math::truth(v[a] == 0.0),
-                Op::Abs => v[a].abs(),
-                Op::Sqrt => v[a].sqrt(),
-                Op::Floor => math::floor(v[a]),
-                Op::Sign => math::sign(v[a]),
-                Op::Exp => math::exp(v[a]),
-                Op::Log => math::log(v[a]),
-                Op::Log10 => math::log10(v[a]),
-                Op::Sin => math::sin(v[a]),
-                Op::Cos => math::cos(v[a]),
-                Op::Tan => math::tan(v[a]),
-                Op::Asin => math::asin(v[a]),
-                Op::Acos => math::acos(v[a]),
-                Op::Atan => math::atan(v[a]),
-                Op::Sinh => math::sinh(v[a]),
-                Op::Cosh => math::cosh(v[a]),
-                Op::Tanh => math::tanh(v[a]),
-                Op::Add => v[a] + v[b],
-                Op::Sub => v[a] - v[b],
-                Op::Mul => v[a] * v[b],
-                Op::Div => v[a] / v[b],
-                Op::Pow => math::pow(v[a], v[b]),
-                Op::Atan2 => math::atan2(v[a], v[b]),
-                Op::Min => math::min(v[a], v[b]),
-                Op::Max => math::max(v[a], v[b]),
-                Op::And => math::truth(v[a] != 0.0 && v[b] != 0.0),
-                Op::Or => math::truth(v[a] != 0.0 || v[b] != 0.0),
-                Op::Lt => math::truth(v[a] < v[b]),
-                Op::Le => math::truth(v[a] <= v[b]),
-                Op::Gt => math::truth(v[a] > v[b]),
-                Op::Ge => math::truth(v[a] >= v[b]),
-                Op::Eq => math::truth(v[a] == v[b]),
-                Op::Ne => math::truth(v[a] != v[b]),
-                Op::Select => v[if v[i.c as usize] == 0.0 { b } else { a }],
-                Op::Jump => {
+                BytecodeOperation::Move => v[a],
+                BytecodeOperation::Number => f64::from_bits(u64::from(i.b) << 32 | u64::from(i.a)),
+                BytecodeOperation::Neg => -v[a],
+                BytecodeOperation::Not => math::truth(v[a] == 0.0),
+                BytecodeOperation::Abs => v[a].abs(),
+                BytecodeOperation::Sqrt => v[a].sqrt(),
+                BytecodeOperation::Floor => math::floor(v[a]),
+                BytecodeOperation::Sign => math::sign(v[a]),
+                BytecodeOperation::Exp => math::exp(v[a]),
+                BytecodeOperation::Log => math::log(v[a]),
+                BytecodeOperation::Log10 => math::log10(v[a]),
+                BytecodeOperation::Sin => math::sin(v[a]),
+                BytecodeOperation::Cos => math::cos(v[a]),
+                BytecodeOperation::Tan => math::tan(v[a]),
+                BytecodeOperation::Asin => math::asin(v[a]),
+                BytecodeOperation::Acos => math::acos(v[a]),
+                BytecodeOperation::Atan => math::atan(v[a]),
+                BytecodeOperation::Sinh => math::sinh(v[a]),
+                BytecodeOperation::Cosh => math::cosh(v[a]),
+                BytecodeOperation::Tanh => math::tanh(v[a]),
+                BytecodeOperation::Add => v[a] + v[b],
+                BytecodeOperation::Sub => v[a] - v[b],
+                BytecodeOperation::Mul => v[a] * v[b],
+                BytecodeOperation::Div => v[a] / v[b],
+                BytecodeOperation::Pow => math::pow(v[a], v[b]),
+                BytecodeOperation::Atan2 => math::atan2(v[a], v[b]),
+                BytecodeOperation::Min => math::min(v[a], v[b]),
+                BytecodeOperation::Max => math::max(v[a], v[b]),
+                BytecodeOperation::And => math::truth(v[a] != 0.0 && v[b] != 0.0),
+                BytecodeOperation::Or => math::truth(v[a] != 0.0 || v[b] != 0.0),
+                BytecodeOperation::Lt => math::truth(v[a] < v[b]),
+                BytecodeOperation::Le => math::truth(v[a] <= v[b]),
+                BytecodeOperation::Gt => math::truth(v[a] > v[b]),
+                BytecodeOperation::Ge => math::truth(v[a] >= v[b]),
+                BytecodeOperation::Eq => math::truth(v[a] == v[b]),
+                BytecodeOperation::Ne => math::truth(v[a] != v[b]),
+                BytecodeOperation::Select => v[if v[i.c as usize] == 0.0 { b } else { a }],
+                BytecodeOperation::Jump => {
                     pc = b;
                     continue;
                 }
-                Op::JumpIfZero => {
+                BytecodeOperation::JumpIfZero => {
                     if v[a] == 0.0 {
                         pc = b;
                     }
                     continue;
                 }
-                Op::Call => {
+                BytecodeOperation::Call => {
                     self.calls[a].run(functions, v);
                     continue;
                 }
@@ -214,22 +214,22 @@ impl CallSite {
 }
 
 /// Writes the instructions of one kernel.
-struct Writer<'a, F> {
-    layout: &'a Layout,
+struct BytecodeWriter<'a, F> {
+    layout: &'a ValueLayout,
     input: F,
     /// Where each register lives.
-    places: Vec<Slot>,
+    places: Vec<ValueSlot>,
     bytecode: Bytecode,
 }
 
-impl<'a, F: Fn(u32) -> Slot> Writer<'a, F> {
-    fn new(code: &Code, layout: &'a Layout, first_register: u32, input: F) -> Self {
+impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
+    fn new(code: &KernelCode, layout: &'a ValueLayout, first_register: u32, input: F) -> Self {
         let places = (first_register..).take(code.registers as usize).map(|place| SCRATCH | place).collect();
         let scratch = first_register + code.registers;
-        Writer { layout, input, places, bytecode: Bytecode { scratch, ..Bytecode::default() } }
+        BytecodeWriter { layout, input, places, bytecode: Bytecode { scratch, ..Bytecode::default() } }
     }
 
-    fn finish(mut self, code: &Code, targets: &[Slot]) -> Bytecode {
+    fn finish(mut self, code: &KernelCode, targets: &[ValueSlot]) -> Bytecode {
         self.steps(&code.steps);
         for (&output, &target) in code.outputs.iter().zip(targets) {
             let from = self.place(output);
@@ -239,9 +239,9 @@ impl<'a, F: Fn(u32) -> Slot> Writer<'a, F> {
     }
 
     /// Lets registers that are outputs live where the outputs go.
-    fn write_in_place(&mut self, code: &Code, targets: &[Slot]) {
+    fn write_in_place(&mut self, code: &KernelCode, targets: &[ValueSlot]) {
         for (&output, &target) in code.outputs.iter().zip(targets) {
-            if let Operand::Register(r) = output
+            if let RegisterOperand::Register(r) = output
                 && self.places[r as usize] & SCRATCH != 0
             {
                 self.places[r as usize] = target;
@@ -250,97 +250,99 @@ impl<'a, F: Fn(u32) -> Slot> Writer<'a, F> {
     }
 
     /// Whether the code reads one of these slots, so that writing early would change what is read later.
-    fn reads_any(&self, code: &Code, targets: &[Slot]) -> bool {
+    fn reads_any(&self, code: &KernelCode, targets: &[ValueSlot]) -> bool {
         let mut targets = targets.to_vec();
         targets.sort_unstable();
         let mut found = false;
         visit_operands(&code.steps, &mut |operand| {
-            if let Operand::Input(input) = operand {
+            if let RegisterOperand::Input(input) = operand {
                 found |= targets.binary_search(&(self.input)(input)).is_ok();
             }
         });
         found |= code.outputs.iter().any(|output| match *output {
-            Operand::Input(input) => targets.binary_search(&(self.input)(input)).is_ok(),
+            RegisterOperand::Input(input) => targets.binary_search(&(self.input)(input)).is_ok(),
             _ => false,
         });
         found
     }
 
-    fn push(&mut self, op: Op, dst: Slot, [a, b, c]: [Slot; 3]) {
-        self.bytecode.instructions.push(Instruction { op, dst, a, b, c });
+    fn push(&mut self, op: BytecodeOperation, dst: ValueSlot, [a, b, c]: [ValueSlot; 3]) {
+        self.bytecode.instructions.push(BytecodeInstruction { op, dst, a, b, c });
     }
 
-    fn copy(&mut self, from: Slot, to: Slot) {
+    fn copy(&mut self, from: ValueSlot, to: ValueSlot) {
         if from != to {
-            self.push(Op::Move, to, [from; 3]);
+            self.push(BytecodeOperation::Move, to, [from; 3]);
         }
     }
 
-    fn place(&mut self, operand: Operand) -> Slot {
+    fn place(&mut self, operand: RegisterOperand) -> ValueSlot {
         match operand {
-            Operand::Input(input) => (self.input)(input),
-            Operand::Register(r) => self.places[r as usize],
-            Operand::Number(bits) => self.layout.known_number(bits).unwrap_or_else(|| self.number(bits)),
+            RegisterOperand::Input(input) => (self.input)(input),
+            RegisterOperand::Register(r) => self.places[r as usize],
+            RegisterOperand::Number(bits) => self.layout.known_number(bits).unwrap_or_else(|| self.number(bits)),
         }
     }
 
     /// A number that came up after the slots were given out.
-    fn number(&mut self, bits: u64) -> Slot {
+    fn number(&mut self, bits: u64) -> ValueSlot {
         let place = SCRATCH | self.bytecode.scratch;
         self.bytecode.scratch += 1;
         #[allow(clippy::cast_possible_truncation, reason = "the two halves")]
-        self.push(Op::Number, place, [bits as u32, (bits >> 32) as u32, 0]);
+        self.push(BytecodeOperation::Number, place, [bits as u32, (bits >> 32) as u32, 0]);
         place
     }
 
-    fn steps(&mut self, steps: &[Step]) {
+    fn steps(&mut self, steps: &[CodeStep]) {
         for step in steps {
             self.step(step);
         }
     }
 
-    fn step(&mut self, step: &Step) {
+    fn step(&mut self, step: &CodeStep) {
         match step {
-            &Step::Unary(op, dst, a) => {
+            &CodeStep::Unary(op, dst, a) => {
                 let a = self.place(a);
                 self.push(unary(op), self.places[dst as usize], [a; 3]);
             }
-            &Step::Binary(op, dst, a, b) => {
+            &CodeStep::Binary(op, dst, a, b) => {
                 let (a, b) = (self.place(a), self.place(b));
                 self.push(binary(op), self.places[dst as usize], [a, b, a]);
             }
-            &Step::Rel(rel, dst, a, b) => {
+            &CodeStep::Rel(rel, dst, a, b) => {
                 let (a, b) = (self.place(a), self.place(b));
                 self.push(relation(rel), self.places[dst as usize], [a, b, a]);
             }
-            &Step::Select { dst, c, a, b } => {
+            &CodeStep::Select { dst, c, a, b } => {
                 let places = [self.place(a), self.place(b), self.place(c)];
-                self.push(Op::Select, self.places[dst as usize], places);
+                self.push(BytecodeOperation::Select, self.places[dst as usize], places);
             }
-            Step::Branch { dst, c, then, otherwise } => self.branch(self.places[*dst as usize], *c, then, otherwise),
-            Step::Call { function, args, outputs } => {
+            CodeStep::Branch { dst, c, then, otherwise } => {
+                self.branch(self.places[*dst as usize], *c, then, otherwise)
+            }
+            CodeStep::Call { function, args, outputs } => {
                 let args = args.iter().map(|&arg| self.place(arg)).collect();
                 let outputs = outputs.iter().map(|&(output, dst)| (output, self.places[dst as usize])).collect();
                 let site = slot(self.bytecode.calls.len());
                 self.bytecode.calls.push(CallSite { function: *function, args, outputs });
-                self.push(Op::Call, 0, [site; 3]);
+                self.push(BytecodeOperation::Call, 0, [site; 3]);
             }
         }
     }
 
-    fn branch(&mut self, dst: Slot, c: Operand, then: &Branch, otherwise: &Branch) {
+    fn branch(&mut self, dst: ValueSlot, c: RegisterOperand, then: &CodeBranch, otherwise: &CodeBranch) {
         let c = self.place(c);
         let over_then = self.bytecode.instructions.len();
-        self.push(Op::JumpIfZero, 0, [c; 3]);
+        self.push(BytecodeOperation::JumpIfZero, 0, [c; 3]);
         self.side(then, dst);
         let over_otherwise = self.bytecode.instructions.len();
-        self.push(Op::Jump, 0, [0; 3]);
+        self.push(BytecodeOperation::Jump, 0, [0; 3]);
         self.bytecode.instructions[over_then].b = slot(self.bytecode.instructions.len());
         self.side(otherwise, dst);
         self.bytecode.instructions[over_otherwise].b = slot(self.bytecode.instructions.len());
     }
 
-    fn side(&mut self, side: &Branch, dst: Slot) {
+    fn side(&mut self, side: &CodeBranch, dst: ValueSlot) {
         self.steps(&side.steps);
         let value = self.place(side.value.expect("a finished branch has a value"));
         self.copy(value, dst);
@@ -348,69 +350,69 @@ impl<'a, F: Fn(u32) -> Slot> Writer<'a, F> {
 }
 
 /// Calls `visit` for every operand of the steps.
-pub fn visit_operands(steps: &[Step], visit: &mut impl FnMut(Operand)) {
+pub fn visit_operands(steps: &[CodeStep], visit: &mut impl FnMut(RegisterOperand)) {
     for step in steps {
         match step {
-            &Step::Unary(_, _, a) => visit(a),
-            &Step::Binary(_, _, a, b) | &Step::Rel(_, _, a, b) => [a, b].into_iter().for_each(&mut *visit),
-            &Step::Select { c, a, b, .. } => [c, a, b].into_iter().for_each(&mut *visit),
-            Step::Branch { c, then, otherwise, .. } => {
+            &CodeStep::Unary(_, _, a) => visit(a),
+            &CodeStep::Binary(_, _, a, b) | &CodeStep::Rel(_, _, a, b) => [a, b].into_iter().for_each(&mut *visit),
+            &CodeStep::Select { c, a, b, .. } => [c, a, b].into_iter().for_each(&mut *visit),
+            CodeStep::Branch { c, then, otherwise, .. } => {
                 visit(*c);
                 for side in [then, otherwise] {
                     visit_operands(&side.steps, visit);
                     side.value.into_iter().for_each(&mut *visit);
                 }
             }
-            Step::Call { args, .. } => args.iter().copied().for_each(&mut *visit),
+            CodeStep::Call { args, .. } => args.iter().copied().for_each(&mut *visit),
         }
     }
 }
 
-fn unary(op: Unary) -> Op {
+fn unary(op: UnaryFunction) -> BytecodeOperation {
     match op {
-        Unary::Neg => Op::Neg,
-        Unary::Not => Op::Not,
-        Unary::Abs => Op::Abs,
-        Unary::Sign => Op::Sign,
-        Unary::Sqrt => Op::Sqrt,
-        Unary::Exp => Op::Exp,
-        Unary::Log => Op::Log,
-        Unary::Log10 => Op::Log10,
-        Unary::Sin => Op::Sin,
-        Unary::Cos => Op::Cos,
-        Unary::Tan => Op::Tan,
-        Unary::Asin => Op::Asin,
-        Unary::Acos => Op::Acos,
-        Unary::Atan => Op::Atan,
-        Unary::Sinh => Op::Sinh,
-        Unary::Cosh => Op::Cosh,
-        Unary::Tanh => Op::Tanh,
-        Unary::Floor => Op::Floor,
+        UnaryFunction::Neg => BytecodeOperation::Neg,
+        UnaryFunction::Not => BytecodeOperation::Not,
+        UnaryFunction::Abs => BytecodeOperation::Abs,
+        UnaryFunction::Sign => BytecodeOperation::Sign,
+        UnaryFunction::Sqrt => BytecodeOperation::Sqrt,
+        UnaryFunction::Exp => BytecodeOperation::Exp,
+        UnaryFunction::Log => BytecodeOperation::Log,
+        UnaryFunction::Log10 => BytecodeOperation::Log10,
+        UnaryFunction::Sin => BytecodeOperation::Sin,
+        UnaryFunction::Cos => BytecodeOperation::Cos,
+        UnaryFunction::Tan => BytecodeOperation::Tan,
+        UnaryFunction::Asin => BytecodeOperation::Asin,
+        UnaryFunction::Acos => BytecodeOperation::Acos,
+        UnaryFunction::Atan => BytecodeOperation::Atan,
+        UnaryFunction::Sinh => BytecodeOperation::Sinh,
+        UnaryFunction::Cosh => BytecodeOperation::Cosh,
+        UnaryFunction::Tanh => BytecodeOperation::Tanh,
+        UnaryFunction::Floor => BytecodeOperation::Floor,
     }
 }
 
-fn binary(op: Binary) -> Op {
+fn binary(op: BinaryFunction) -> BytecodeOperation {
     match op {
-        Binary::Add => Op::Add,
-        Binary::Sub => Op::Sub,
-        Binary::Mul => Op::Mul,
-        Binary::Div => Op::Div,
-        Binary::Pow => Op::Pow,
-        Binary::Atan2 => Op::Atan2,
-        Binary::Min => Op::Min,
-        Binary::Max => Op::Max,
-        Binary::And => Op::And,
-        Binary::Or => Op::Or,
+        BinaryFunction::Add => BytecodeOperation::Add,
+        BinaryFunction::Sub => BytecodeOperation::Sub,
+        BinaryFunction::Mul => BytecodeOperation::Mul,
+        BinaryFunction::Div => BytecodeOperation::Div,
+        BinaryFunction::Pow => BytecodeOperation::Pow,
+        BinaryFunction::Atan2 => BytecodeOperation::Atan2,
+        BinaryFunction::Min => BytecodeOperation::Min,
+        BinaryFunction::Max => BytecodeOperation::Max,
+        BinaryFunction::And => BytecodeOperation::And,
+        BinaryFunction::Or => BytecodeOperation::Or,
     }
 }
 
-fn relation(rel: Rel) -> Op {
+fn relation(rel: RelationalOp) -> BytecodeOperation {
     match rel {
-        Rel::Lt => Op::Lt,
-        Rel::Le => Op::Le,
-        Rel::Gt => Op::Gt,
-        Rel::Ge => Op::Ge,
-        Rel::Eq => Op::Eq,
-        Rel::Ne => Op::Ne,
+        RelationalOp::Lt => BytecodeOperation::Lt,
+        RelationalOp::Le => BytecodeOperation::Le,
+        RelationalOp::Gt => BytecodeOperation::Gt,
+        RelationalOp::Ge => BytecodeOperation::Ge,
+        RelationalOp::Eq => BytecodeOperation::Eq,
+        RelationalOp::Ne => BytecodeOperation::Ne,
     }
 }

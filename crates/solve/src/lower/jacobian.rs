@@ -3,48 +3,54 @@
 //! Each definition's kernel is differentiated by those of its inputs that depend on a column. At run time the partial
 //! derivatives are computed by kernels, then sums of products carry d slot / d column from definition to definition.
 
-use super::Pattern;
-use super::layout::{Layout, Slot, slot};
-use super::program::{Defs, Products};
-use super::shape::{Shaped, Shaper};
-use bramah_expr::{ExprId, Exprs, Node};
+use super::SparsityPattern;
+use super::layout::{ValueLayout, ValueSlot, slot};
+use super::program::{KernelDefinitions, ProductSums};
+use super::shape::{KernelExpression, KernelShaper};
+use bramah_expr::{ExprId, ExprNode, Exprs};
 use rustc_hash::FxHashMap;
 
 /// The columns a slot depends on, ascending, each with the slot of the derivative.
-pub type Gradient = Vec<(u32, Slot)>;
+pub type SlotGradient = Vec<(u32, ValueSlot)>;
 
 /// Collects what computes the derivatives of slots by columns.
 #[derive(Debug, Default)]
 pub struct Differentials {
-    gradients: FxHashMap<Slot, Gradient>,
+    gradients: FxHashMap<ValueSlot, SlotGradient>,
     /// Values and partial derivatives.
-    pub defs: Defs,
+    pub defs: KernelDefinitions,
     /// The chain rule.
-    pub products: Products,
+    pub products: ProductSums,
 }
 
 /// One product of the chain rule: column, partial derivative, inner derivative.
-type Term = (u32, Slot, Slot);
+type ChainRuleTerm = (u32, ValueSlot, ValueSlot);
 
 impl Differentials {
     /// Says that `slot` holds a column's unknown (`factor` is the slot of 1) or its derivative (the slot of `cj`).
-    pub fn seed(&mut self, slot: Slot, column: u32, factor: Slot) {
+    pub fn seed(&mut self, slot: ValueSlot, column: u32, factor: ValueSlot) {
         self.gradients.insert(slot, vec![(column, factor)]);
     }
 
     /// The derivatives of a slot.
-    pub fn gradient(&self, slot: Slot) -> &[(u32, Slot)] {
+    pub fn gradient(&self, slot: ValueSlot) -> &[(u32, ValueSlot)] {
         self.gradients.get(&slot).map_or(&[], Vec::as_slice)
     }
 
     /// Adds a definition: its value, if something reads it, and its derivatives.
-    pub fn define(&mut self, shaper: &mut Shaper, target: Slot, shaped: &Shaped, value_is_read: bool) {
+    pub fn define(
+        &mut self,
+        shaper: &mut KernelShaper,
+        target: ValueSlot,
+        shaped: &KernelExpression,
+        value_is_read: bool,
+    ) {
         let (mut outputs, mut targets) = (Vec::new(), Vec::new());
         if value_is_read {
             outputs.push(shaped.expr);
             targets.push(target);
         }
-        let mut terms: Vec<Term> = Vec::new();
+        let mut terms: Vec<ChainRuleTerm> = Vec::new();
         for (input, &from) in (0..).zip(&shaped.inputs) {
             if !self.gradients.contains_key(&from) {
                 continue;
@@ -60,7 +66,7 @@ impl Differentials {
             self.defs.push(&mut shaper.kernels, outputs, &shaped.inputs, &targets);
         }
         terms.sort_by_key(|&(column, ..)| column);
-        let gradient: Gradient = terms
+        let gradient: SlotGradient = terms
             .chunk_by(|a, b| a.0 == b.0)
             .map(|terms| (terms[0].0, self.accumulate(&mut shaper.layout, terms)))
             .collect();
@@ -72,7 +78,7 @@ impl Differentials {
     }
 
     /// The slot of a sum of products.
-    fn accumulate(&mut self, layout: &mut Layout, terms: &[Term]) -> Slot {
+    fn accumulate(&mut self, layout: &mut ValueLayout, terms: &[ChainRuleTerm]) -> ValueSlot {
         let one = layout.number(1.0);
         if let &[(_, partial, inner)] = terms {
             if partial == one {
@@ -91,15 +97,15 @@ impl Differentials {
 
 /// Where a partial derivative is found: a number's slot, an input's slot, or a new slot that the kernel writes.
 fn partial_slot(
-    shaper: &mut Shaper,
+    shaper: &mut KernelShaper,
     partial: ExprId,
-    inputs: &[Slot],
+    inputs: &[ValueSlot],
     outputs: &mut Vec<ExprId>,
-    targets: &mut Vec<Slot>,
-) -> Slot {
+    targets: &mut Vec<ValueSlot>,
+) -> ValueSlot {
     match shaper.kernels.pool.node(partial) {
-        Node::Num(bits) => shaper.layout.number(f64::from_bits(bits)),
-        Node::Var(v) => inputs[v.index()],
+        ExprNode::Num(bits) => shaper.layout.number(f64::from_bits(bits)),
+        ExprNode::Var(v) => inputs[v.index()],
         _ => {
             let place = shaper.layout.work(1);
             outputs.push(partial);
@@ -111,20 +117,24 @@ fn partial_slot(
 
 /// A matrix entry: `values[plus] - values[minus]`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct JacobianEntry {
     pub column: u32,
     pub row: u32,
-    pub plus: Slot,
-    pub minus: Slot,
+    pub plus: ValueSlot,
+    pub minus: ValueSlot,
 }
 
 /// Sorts entries into compressed columns, merging those of one place, which must not both have the same sign.
-pub fn compress(n: usize, mut entries: Vec<Entry>, zero: Slot) -> (Pattern, Vec<(Slot, Slot)>) {
+pub fn compress(
+    n: usize,
+    mut entries: Vec<JacobianEntry>,
+    zero: ValueSlot,
+) -> (SparsityPattern, Vec<(ValueSlot, ValueSlot)>) {
     entries.sort_by_key(|e| (e.column, e.row));
-    let mut pattern = Pattern { n, colptr: vec![0; n + 1], rowidx: Vec::with_capacity(entries.len()) };
+    let mut pattern = SparsityPattern { n, colptr: vec![0; n + 1], rowidx: Vec::with_capacity(entries.len()) };
     let mut slots = Vec::with_capacity(entries.len());
     for same in entries.chunk_by(|a, b| (a.column, a.row) == (b.column, b.row)) {
-        let either = |part: fn(&Entry) -> Slot| same.iter().map(part).find(|&s| s != zero).unwrap_or(zero);
+        let either = |part: fn(&JacobianEntry) -> ValueSlot| same.iter().map(part).find(|&s| s != zero).unwrap_or(zero);
         pattern.rowidx.push(same[0].row as usize);
         pattern.colptr[same[0].column as usize + 1] += 1;
         slots.push((either(|e| e.plus), either(|e| e.minus)));

@@ -1,26 +1,26 @@
 //! Where every number lives: one flat array per run.
 
-use bramah_expr::{ExprId, Exprs, Node, VarId};
-use bramah_model::structure::{Block, Dae, Unknown};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
+use bramah_model::structure::{BltBlock, Dae, Unknown};
 use rustc_hash::FxHashMap;
 
 /// A place in the array of values. Byte offsets of slots fit into 32 bits.
-pub type Slot = u32;
+pub type ValueSlot = u32;
 
-const NONE: Slot = Slot::MAX;
+const NONE: ValueSlot = ValueSlot::MAX;
 
-/// The slots of a model. One array of [`Layout::len`] numbers holds everything that kernels read and write: what the
+/// The slots of a model. One array of [`ValueLayout::len`] numbers holds everything that kernels read and write: what the
 /// run says (time, homotopy, phase), variables, derivatives, values before the event, numbers of the text, and work.
 #[derive(Clone, Debug)]
-pub struct Layout {
-    der: Vec<Slot>,
-    pre: Vec<Slot>,
-    numbers: FxHashMap<u64, Slot>,
-    preset: Vec<(Slot, f64)>,
+pub struct ValueLayout {
+    der: Vec<ValueSlot>,
+    pre: Vec<ValueSlot>,
+    numbers: FxHashMap<u64, ValueSlot>,
+    preset: Vec<(ValueSlot, f64)>,
     len: u32,
 }
 
-impl Layout {
+impl ValueLayout {
     /// Simulated time, s.
     pub const TIME: usize = 0;
     /// Homotopy parameter of the initial system: 0 simplified, 1 actual.
@@ -34,9 +34,9 @@ impl Layout {
     const VARIABLES: u32 = 5;
 
     /// The slots of the variables of `dae`, of all derivatives and of all values before events that occur in it.
-    pub fn new(dae: &Dae) -> Layout {
+    pub fn new(dae: &Dae) -> ValueLayout {
         let variables = u32::try_from(dae.variables.len()).expect("fewer than 2^32 variables");
-        let mut layout = Layout {
+        let mut layout = ValueLayout {
             der: vec![NONE; dae.variables.len()],
             pre: vec![NONE; dae.variables.len()],
             numbers: FxHashMap::default(),
@@ -79,7 +79,7 @@ impl Layout {
     }
 
     /// The slots of all values before the event.
-    pub(super) fn pre_slots(&self) -> impl Iterator<Item = Slot> {
+    pub(super) fn pre_slots(&self) -> impl Iterator<Item = ValueSlot> {
         self.pre.iter().copied().filter(|&slot| slot != NONE)
     }
 
@@ -101,22 +101,22 @@ impl Layout {
     }
 
     /// The slot that a leaf of an expression reads; `None` for what is not a leaf.
-    pub(super) fn leaf(&self, node: Node) -> Option<Slot> {
+    pub(super) fn leaf(&self, node: ExprNode) -> Option<ValueSlot> {
         let found = match node {
-            Node::Num(bits) => *self.numbers.get(&bits)?,
-            Node::Time => slot(Self::TIME),
-            Node::Var(v) => Self::VARIABLES + v.0,
-            Node::Der(v) => self.der[v.index()],
-            Node::Pre(v) => self.pre[v.index()],
-            Node::Initial => slot(Self::INITIAL),
-            Node::Terminal => slot(Self::TERMINAL),
+            ExprNode::Num(bits) => *self.numbers.get(&bits)?,
+            ExprNode::Time => slot(Self::TIME),
+            ExprNode::Var(v) => Self::VARIABLES + v.0,
+            ExprNode::Der(v) => self.der[v.index()],
+            ExprNode::Pre(v) => self.pre[v.index()],
+            ExprNode::Initial => slot(Self::INITIAL),
+            ExprNode::Terminal => slot(Self::TERMINAL),
             _ => return None,
         };
         (found != NONE).then_some(found)
     }
 
     /// The slot that always holds this number.
-    pub(super) fn number(&mut self, value: f64) -> Slot {
+    pub(super) fn number(&mut self, value: f64) -> ValueSlot {
         if let Some(&found) = self.numbers.get(&value.to_bits()) {
             return found;
         }
@@ -127,12 +127,12 @@ impl Layout {
     }
 
     /// The slot of a number that is known to have one.
-    pub(super) fn known_number(&self, bits: u64) -> Option<Slot> {
+    pub(super) fn known_number(&self, bits: u64) -> Option<ValueSlot> {
         self.numbers.get(&bits).copied()
     }
 
     /// The first of `count` new neighbouring slots.
-    pub(super) fn work(&mut self, count: usize) -> Slot {
+    pub(super) fn work(&mut self, count: usize) -> ValueSlot {
         let first = self.len;
         self.len += slot(count);
         assert!(self.len < 1 << 28, "the byte offset of every slot fits into 31 bits");
@@ -151,19 +151,19 @@ impl Layout {
         }
     }
 
-    fn add_unknowns(&mut self, block: &Block) {
+    fn add_unknowns(&mut self, block: &BltBlock) {
         let mut add = |unknown: Unknown| {
             if let Unknown::Der(v) = unknown {
                 self.add_der(v);
             }
         };
         match block {
-            Block::Assign(assign) => add(assign.unknown),
-            Block::Loop(l) => {
+            BltBlock::Assign(assign) => add(assign.unknown),
+            BltBlock::Loop(l) => {
                 l.tearing.iter().for_each(|&u| add(u));
                 l.inner.iter().for_each(|a| add(a.unknown));
             }
-            Block::Mixed(mixed) => {
+            BltBlock::Mixed(mixed) => {
                 mixed.discrete.iter().for_each(|a| add(a.unknown));
                 mixed.continuous.iter().for_each(|b| self.add_unknowns(b));
             }
@@ -173,9 +173,9 @@ impl Layout {
     fn add_leaves(&mut self, exprs: &Exprs) {
         for id in 0..exprs.len() {
             match exprs.node(ExprId(slot(id))) {
-                Node::Der(v) => self.add_der(v),
-                Node::Pre(v) => self.add_pre(v),
-                Node::Num(bits) => {
+                ExprNode::Der(v) => self.add_der(v),
+                ExprNode::Pre(v) => self.add_pre(v),
+                ExprNode::Num(bits) => {
                     self.number(f64::from_bits(bits));
                 }
                 _ => {}
@@ -185,10 +185,10 @@ impl Layout {
 }
 
 /// An index as a slot.
-pub(super) fn slot(index: usize) -> Slot {
-    Slot::try_from(index).expect("fewer than 2^32 slots")
+pub(super) fn slot(index: usize) -> ValueSlot {
+    ValueSlot::try_from(index).expect("fewer than 2^32 slots")
 }
 
-fn existing(slot: Slot) -> Option<usize> {
+fn existing(slot: ValueSlot) -> Option<usize> {
     (slot != NONE).then_some(slot as usize)
 }

@@ -1,7 +1,7 @@
-//! From the sorted DAE to a [`System`]: programs over one flat array of values for the residual, its exact sparse
+//! From the sorted DAE to a [`ExecutableSystem`]: programs over one flat array of values for the residual, its exact sparse
 //! Jacobian, zero crossings, outputs, events and the start.
 //!
-//! [`lower`] is the entry. How the array is laid out says [`Layout`]; which explicit variables IDA never sees says
+//! [`lower`] is the entry. How the array is laid out says [`ValueLayout`]; which explicit variables IDA never sees says
 //! `eliminate`; how equal expressions share one kernel says `shape`.
 
 mod blocks;
@@ -21,28 +21,28 @@ mod system;
 mod translate;
 mod trap;
 
-pub use layout::{Layout, Slot};
+pub use layout::{ValueLayout, ValueSlot};
 pub use program::Program;
-pub use system::System;
-pub use trap::Trap;
+pub use system::ExecutableSystem;
+pub use trap::NonFiniteTrap;
 
 use bramah_expr::{ExprId, VarId};
 use bramah_model::structure::{Dae, Unknown};
 use conditions::ConditionsDraft;
 use continuous::{ContinuousDraft, CrossingsDraft, Observables, QuantitiesDraft};
-use eliminate::Plan;
+use eliminate::ContinuousPlan;
 use jacobian::Differentials;
 use layout::slot;
-use parameters::Bindings;
-use program::{Assembler, Defs, Order};
+use parameters::BindingEvaluator;
+use program::{DefinitionOrder, KernelDefinitions, ProgramAssembler};
 use rustc_hash::FxHashMap;
-use shape::{Kernels, Shaper};
+use shape::{KernelShaper, KernelTable};
 use std::sync::Arc;
-use system::Programs;
+use system::SystemPrograms;
 
 /// How to lower.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Options {
+pub struct LoweringOptions {
     /// Compile to machine code what runs often enough to pay for it; else everything is interpreted. Both give the same
     /// bits.
     pub native: bool,
@@ -51,24 +51,24 @@ pub struct Options {
     pub conserve: bool,
 }
 
-impl Default for Options {
+impl Default for LoweringOptions {
     fn default() -> Self {
-        Options { native: true, conserve: true }
+        LoweringOptions { native: true, conserve: true }
     }
 }
 
-impl Options {
+impl LoweringOptions {
     /// Interpreted only: for models that run once.
-    pub const INTERPRETED: Options = Options { native: false, conserve: true };
+    pub const INTERPRETED: LoweringOptions = LoweringOptions { native: false, conserve: true };
 }
 
-/// A value that is not finite came out. [`System::trap`] finds where it was made.
+/// A value that is not finite came out. [`ExecutableSystem::trap`] finds where it was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NonFinite;
 
 /// An unknown of the IDA system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Column {
+pub struct UnknownColumn {
     /// The variable.
     pub variable: VarId,
     /// What it is to the integrator.
@@ -88,7 +88,7 @@ pub enum ColumnRole {
     Algebraic,
 }
 
-impl Column {
+impl UnknownColumn {
     /// A state of the model.
     pub fn is_state(&self) -> bool {
         matches!(self.role, ColumnRole::State | ColumnRole::Following)
@@ -102,15 +102,15 @@ impl Column {
 
 /// A conserved quantity that is integrated.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Integral {
+pub struct ConservedIntegral {
     /// The column of the quantity.
     pub column: usize,
     /// The column of the state that follows from it.
     pub state: usize,
     /// The slot of the quantity as it is by the states.
-    pub slot: Slot,
+    pub slot: ValueSlot,
     /// The slot of its derivative by the state that follows, as far as it is known.
-    pub slope: Slot,
+    pub slope: ValueSlot,
     /// Where that derivative stands in the Jacobian, with the sign turned; `None` where it vanishes.
     pub entry: Option<usize>,
     /// The entries of its row there.
@@ -119,7 +119,7 @@ pub struct Integral {
 
 /// Compressed sparse columns: rows of column `j` are `rowidx[colptr[j]..colptr[j + 1]]`, ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Pattern {
+pub struct SparsityPattern {
     /// Rows and columns.
     pub n: usize,
     /// `n + 1` positions in `rowidx`.
@@ -128,7 +128,7 @@ pub struct Pattern {
     pub rowidx: Vec<usize>,
 }
 
-impl Pattern {
+impl SparsityPattern {
     /// Number of entries.
     pub fn nnz(&self) -> usize {
         self.rowidx.len()
@@ -137,14 +137,14 @@ impl Pattern {
 
 /// One explicit assignment inside a [`BlockCode`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Target {
+pub struct AssignTarget {
     /// What is computed.
     pub unknown: Unknown,
     /// Its slot.
     pub slot: usize,
     /// Index into `Dae::equations`.
     pub equation: u32,
-    /// The value's expression, for [`System::trap`].
+    /// The value's expression, for [`ExecutableSystem::trap`].
     pub value: ExprId,
 }
 
@@ -156,7 +156,7 @@ pub struct Target {
 #[derive(Clone, Debug)]
 pub struct AssignCode {
     /// What it computes, in order.
-    pub targets: Vec<Target>,
+    pub targets: Vec<AssignTarget>,
     /// Computes all targets from the slots of what came before.
     pub program: Program,
 }
@@ -170,7 +170,7 @@ pub struct LoopCode {
     /// The slot of each tearing unknown.
     pub tearing_slots: Vec<usize>,
     /// Variables that follow explicitly.
-    pub inner: Vec<Target>,
+    pub inner: Vec<AssignTarget>,
     /// The slot of each residual, as many as tearing unknowns.
     pub residual_slots: Vec<usize>,
     /// The expression of each residual and its equation (index into `Dae::equations`).
@@ -178,7 +178,7 @@ pub struct LoopCode {
     /// Computes inner variables and residuals.
     pub residual: Program,
     /// Structure of the matrix: rows are residuals, columns are tearing unknowns.
-    pub pattern: Pattern,
+    pub pattern: SparsityPattern,
     /// Computes inner variables, and the matrix into `jacobian_slots`.
     pub jacobian: Program,
     /// The slot of each entry of `pattern`.
@@ -190,7 +190,7 @@ pub struct LoopCode {
 /// A loop through discrete equations: solve `continuous`, run `discrete`, until no discrete value changes.
 #[derive(Clone, Debug)]
 pub struct MixedCode {
-    /// With discrete values frozen; `Assign` and `Loop` only.
+    /// With discrete values frozen; `Assign` and `KernelLoop` only.
     pub continuous: Vec<BlockCode>,
     /// The discrete equations, in order; several programs because modes stand alone.
     pub discrete: Vec<AssignCode>,
@@ -207,9 +207,9 @@ pub enum BlockCode {
     Mixed(Box<MixedCode>),
 }
 
-/// Conditions that are evaluated together; see [`System::actions`] and [`System::asserts`].
+/// Conditions that are evaluated together; see [`ExecutableSystem::actions`] and [`ExecutableSystem::asserts`].
 #[derive(Clone, Debug)]
-pub struct Conditions {
+pub struct ConditionProgram {
     /// Computes all slots below from the slots of variables.
     pub program: Program,
     /// Per entry of `Dae::actions` whether it fires (not 0), or per entry of `Dae::asserts` whether it holds (not 0).
@@ -221,18 +221,18 @@ pub struct Conditions {
 
 /// A row of the IDA system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Row {
+pub struct ResidualRow {
     /// Index into `Dae::equations`.
     pub equation: u32,
     /// What it was made for.
-    pub kind: RowKind,
-    /// The right side, or the residual: for [`System::trap`].
+    pub kind: ResidualRowKind,
+    /// The right side, or the residual: for [`ExecutableSystem::trap`].
     pub value: ExprId,
 }
 
 /// What a row of the IDA system was made for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowKind {
+pub enum ResidualRowKind {
     /// `der(x) - value` for the state of the column with the row's own number.
     Derivative,
     /// `v - value` for the algebraic unknown of the column with the row's own number.
@@ -244,24 +244,29 @@ pub enum RowKind {
 }
 
 /// Lowers a model.
-pub fn lower(dae: Arc<Dae>, options: &Options) -> System {
-    let layout = Layout::new(&dae);
+pub fn lower(dae: Arc<Dae>, options: &LoweringOptions) -> ExecutableSystem {
+    let layout = ValueLayout::new(&dae);
     let plan = eliminate::plan(&dae, &layout, true, options.conserve);
     lower_planned(dae, layout, plan, options)
 }
 
 /// Lowers a model for evaluation point by point: all that is explicit stays so, however much it fills the Jacobian,
 /// because nobody factorises it.
-pub fn lower_explicit(dae: Arc<Dae>, options: &Options) -> System {
-    let layout = Layout::new(&dae);
+pub fn lower_explicit(dae: Arc<Dae>, options: &LoweringOptions) -> ExecutableSystem {
+    let layout = ValueLayout::new(&dae);
     let plan = eliminate::plan(&dae, &layout, false, false);
     lower_planned(dae, layout, plan, options)
 }
 
-fn lower_planned(dae: Arc<Dae>, layout: Layout, plan: Plan, options: &Options) -> System {
-    let mut shaper = Shaper::new(&dae, layout);
-    let drafts = Drafts::new(&dae, &plan, &mut shaper);
-    let Shaper { kernels, mut layout, .. } = shaper;
+fn lower_planned(
+    dae: Arc<Dae>,
+    layout: ValueLayout,
+    plan: ContinuousPlan,
+    options: &LoweringOptions,
+) -> ExecutableSystem {
+    let mut shaper = KernelShaper::new(&dae, layout);
+    let drafts = ProgramDrafts::new(&dae, &plan, &mut shaper);
+    let KernelShaper { kernels, mut layout, .. } = shaper;
     kernels.numbers().for_each(|number| {
         layout.number(number);
     });
@@ -269,21 +274,21 @@ fn lower_planned(dae: Arc<Dae>, layout: Layout, plan: Plan, options: &Options) -
 }
 
 /// The definitions of all programs, before the programs are made: code needs to know all slots.
-struct Drafts {
-    bindings: (Vec<VarId>, Defs),
+struct ProgramDrafts {
+    bindings: (Vec<VarId>, KernelDefinitions),
     continuous: ContinuousDraft,
     observables: Observables,
     crossings: CrossingsDraft,
     quantities: QuantitiesDraft,
     actions: ConditionsDraft,
     asserts: ConditionsDraft,
-    event: Vec<blocks::Draft>,
-    initial: Vec<blocks::Draft>,
-    hoisted: Defs,
+    event: Vec<blocks::BlockDraft>,
+    initial: Vec<blocks::BlockDraft>,
+    hoisted: KernelDefinitions,
 }
 
-impl Drafts {
-    fn new(dae: &Dae, plan: &Plan, shaper: &mut Shaper) -> Drafts {
+impl ProgramDrafts {
+    fn new(dae: &Dae, plan: &ContinuousPlan, shaper: &mut KernelShaper) -> ProgramDrafts {
         let inline = FxHashMap::default();
         let modes = dae.crossings.iter().map(|crossing| crossing.mode).collect();
         let bindings = parameters::draft(dae, shaper);
@@ -293,16 +298,34 @@ impl Drafts {
         let quantities = continuous::quantities(plan, shaper);
         let actions = conditions::actions(dae, shaper);
         let asserts = conditions::asserts(dae, shaper);
-        let event = blocks::Drafter::new(shaper, false, &inline, &modes).blocks(&dae.event);
-        let initial = blocks::Drafter::new(shaper, true, &inline, &modes).blocks(&dae.initial);
+        let event = blocks::BlockDrafter::new(shaper, false, &inline, &modes).blocks(&dae.event);
+        let initial = blocks::BlockDrafter::new(shaper, true, &inline, &modes).blocks(&dae.initial);
         let hoisted = shaper.hoisted_definitions();
-        Drafts { bindings, continuous, observables, crossings, quantities, actions, asserts, event, initial, hoisted }
+        ProgramDrafts {
+            bindings,
+            continuous,
+            observables,
+            crossings,
+            quantities,
+            actions,
+            asserts,
+            event,
+            initial,
+            hoisted,
+        }
     }
 
-    fn assemble(self, dae: Arc<Dae>, plan: Plan, layout: Layout, kernels: Kernels, options: &Options) -> System {
+    fn assemble(
+        self,
+        dae: Arc<Dae>,
+        plan: ContinuousPlan,
+        layout: ValueLayout,
+        kernels: KernelTable,
+        options: &LoweringOptions,
+    ) -> ExecutableSystem {
         let functions = Arc::new(kernels.pool.functions.clone());
         let kernels = Arc::new(kernels);
-        let mut programs = Programs { functions, kernels: kernels.clone(), ..Programs::default() };
+        let mut programs = SystemPrograms { functions, kernels: kernels.clone(), ..SystemPrograms::default() };
         programs.column_slots = plan.columns.iter().map(|c| slot(layout.var(c.variable))).collect();
         programs.row_slots = self.continuous.row_slots;
         programs.entries = self.continuous.entries;
@@ -310,10 +333,10 @@ impl Drafts {
         programs.crossing_slots = self.crossings.slots;
         programs.aliases = alias_slots(&dae, &layout);
         programs.late = late_parameters(&dae);
-        programs.bindings = Bindings::new(&self.bindings.0, &self.bindings.1, &kernels, &layout);
+        programs.bindings = BindingEvaluator::new(&self.bindings.0, &self.bindings.1, &kernels, &layout);
 
-        let mut assembler = Assembler::new(&kernels, &layout, options.native);
-        let by_need = Order::Dependency;
+        let mut assembler = ProgramAssembler::new(&kernels, &layout, options.native);
+        let by_need = DefinitionOrder::Dependency;
         assembler.often(true);
         programs.residual = assembler.assemble(&self.continuous.residual, by_need, None);
         let with_observables = self.observables.before(&kernels, &self.crossings.defs);
@@ -344,7 +367,7 @@ impl Drafts {
         programs.native = options.native;
 
         let standing_asserts = conditions::standing(&dae);
-        let mut system = System {
+        let mut system = ExecutableSystem {
             columns: plan.columns,
             rows: plan.rows,
             integrals: located(self.quantities.integrals, &self.continuous.pattern),
@@ -365,7 +388,7 @@ impl Drafts {
 }
 
 /// With the places of the derivatives in the Jacobian.
-fn located(mut integrals: Vec<Integral>, pattern: &Pattern) -> Vec<Integral> {
+fn located(mut integrals: Vec<ConservedIntegral>, pattern: &SparsityPattern) -> Vec<ConservedIntegral> {
     let of_row: FxHashMap<usize, usize> =
         integrals.iter().enumerate().map(|(i, integral)| (integral.state, i)).collect();
     for column in 0..pattern.n {
@@ -381,7 +404,7 @@ fn located(mut integrals: Vec<Integral>, pattern: &Pattern) -> Vec<Integral> {
     integrals
 }
 
-fn alias_slots(dae: &Dae, layout: &Layout) -> Vec<(Slot, Slot, bool)> {
+fn alias_slots(dae: &Dae, layout: &ValueLayout) -> Vec<(ValueSlot, ValueSlot, bool)> {
     let place = |v| slot(layout.var(v));
     dae.aliases.iter().map(|a| (place(a.variable), place(a.target), a.negated)).collect()
 }

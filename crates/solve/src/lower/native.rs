@@ -1,12 +1,12 @@
 //! Machine code by Cranelift: the same steps as the interpreter, to the bit.
 //!
 //! The only place of this folder with `unsafe`: calling the code, and freeing its memory. Why the calls are sound: code
-//! reads and writes the array of values only at slots of the layout it was made for ([`Entry`] is run by
-//! `Program::run`, which checks the array's length), and the memory lives as long as any [`Entry`] does.
+//! reads and writes the array of values only at slots of the layout it was made for ([`NativeEntry`] is run by
+//! `Program::run`, which checks the array's length), and the memory lives as long as any [`NativeEntry`] does.
 
-use super::code::Code;
-use super::layout::Slot;
-use super::translate::Translator;
+use super::code::KernelCode;
+use super::layout::ValueSlot;
+use super::translate::NativeTranslator;
 use bramah_expr::function::Function;
 use bramah_expr::math;
 use cranelift_codegen::ir::types::{F64, I32};
@@ -18,17 +18,17 @@ use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
 /// What making code gives.
-type Built<T> = Result<T, Box<ModuleError>>;
+type ModuleResult<T> = Result<T, Box<ModuleError>>;
 
 /// Values, table, number of rows, functions.
-type Native = unsafe extern "C" fn(*mut f64, *const Slot, usize, *const FunctionList);
+type NativeFunction = unsafe extern "C" fn(*mut f64, *const ValueSlot, usize, *const FunctionList);
 
 /// Code in executable memory.
 #[derive(Clone, Debug)]
-pub struct Entry {
-    function: Native,
+pub struct NativeEntry {
+    function: NativeFunction,
     /// Keeps the code alive.
-    _memory: Arc<Memory>,
+    _memory: Arc<ExecutableMemory>,
 }
 
 /// The user's functions, for calls out of machine code.
@@ -36,19 +36,19 @@ struct FunctionList<'a> {
     functions: &'a [Function],
 }
 
-impl Entry {
+impl NativeEntry {
     /// Runs straight code.
     pub fn run(&self, values: &mut [f64], functions: &[Function]) {
         self.call(values, &[], 0, functions);
     }
 
     /// Runs a loop over the rows of `table`.
-    pub fn run_table(&self, values: &mut [f64], table: &[Slot], width: usize, functions: &[Function]) {
+    pub fn run_table(&self, values: &mut [f64], table: &[ValueSlot], width: usize, functions: &[Function]) {
         self.call(values, table, table.len() / width, functions);
     }
 
     #[allow(unsafe_code, reason = "machine code is called here and nowhere else")]
-    fn call(&self, values: &mut [f64], table: &[Slot], rows: usize, functions: &[Function]) {
+    fn call(&self, values: &mut [f64], table: &[ValueSlot], rows: usize, functions: &[Function]) {
         let list = FunctionList { functions };
         // SAFETY: the code was made by `compile` with this signature, lives as long as `self._memory`, and touches
         // `values` only at slots of its layout, whose length the caller has checked.
@@ -57,11 +57,11 @@ impl Entry {
 }
 
 /// Owns executable memory.
-struct Memory {
+struct ExecutableMemory {
     module: Option<JITModule>,
 }
 
-impl std::fmt::Debug for Memory {
+impl std::fmt::Debug for ExecutableMemory {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("Memory")
     }
@@ -70,16 +70,16 @@ impl std::fmt::Debug for Memory {
 // SAFETY: after `compile` nothing touches the module until it is dropped, once, by whoever holds the last `Arc`; the
 // memory behind it is only executed.
 #[allow(unsafe_code, reason = "see above")]
-unsafe impl Send for Memory {}
+unsafe impl Send for ExecutableMemory {}
 // SAFETY: as for `Send`.
 #[allow(unsafe_code, reason = "see above")]
-unsafe impl Sync for Memory {}
+unsafe impl Sync for ExecutableMemory {}
 
-impl Drop for Memory {
+impl Drop for ExecutableMemory {
     #[allow(unsafe_code, reason = "the memory is freed here and nowhere else")]
     fn drop(&mut self) {
         if let Some(module) = self.module.take() {
-            // SAFETY: every `Entry` holds this memory, so no code in it can run or be called again.
+            // SAFETY: every `NativeEntry` holds this memory, so no code in it can run or be called again.
             unsafe { module.free_memory() }
         }
     }
@@ -87,36 +87,36 @@ impl Drop for Memory {
 
 /// Which of the ordered codes a program wants.
 #[derive(Clone, Copy, Debug)]
-pub struct Ticket(usize);
+pub struct CodeTicket(usize);
 
-impl Ticket {
-    /// The place of its entry in the result of [`Compiler::compile`].
+impl CodeTicket {
+    /// The place of its entry in the result of [`NativeCompiler::compile`].
     pub fn index(self) -> usize {
         self.0
     }
 }
 
 #[derive(Debug)]
-enum Job {
-    Straight { code: Arc<Code>, targets: Vec<Slot> },
-    Loop { code: Arc<Code>, inputs: u32 },
+enum NativeJob {
+    Straight { code: Arc<KernelCode>, targets: Vec<ValueSlot> },
+    Loop { code: Arc<KernelCode>, inputs: u32 },
 }
 
 /// Collects codes to be compiled together.
 #[derive(Debug, Default)]
-pub struct Compiler {
-    jobs: Vec<Job>,
+pub struct NativeCompiler {
+    jobs: Vec<NativeJob>,
 }
 
-impl Compiler {
+impl NativeCompiler {
     /// Code whose inputs are slots and whose outputs go to `targets`.
-    pub fn order_straight(&mut self, code: Arc<Code>, targets: Vec<Slot>) -> Ticket {
-        self.order(Job::Straight { code, targets })
+    pub fn order_straight(&mut self, code: Arc<KernelCode>, targets: Vec<ValueSlot>) -> CodeTicket {
+        self.order(NativeJob::Straight { code, targets })
     }
 
     /// Code for a loop over a table whose rows hold the slots of inputs and outputs.
-    pub fn order_loop(&mut self, code: Arc<Code>, inputs: u32) -> Ticket {
-        self.order(Job::Loop { code, inputs })
+    pub fn order_loop(&mut self, code: Arc<KernelCode>, inputs: u32) -> CodeTicket {
+        self.order(NativeJob::Loop { code, inputs })
     }
 
     /// True when nothing was ordered.
@@ -124,18 +124,18 @@ impl Compiler {
         self.jobs.is_empty()
     }
 
-    fn order(&mut self, job: Job) -> Ticket {
+    fn order(&mut self, job: NativeJob) -> CodeTicket {
         self.jobs.push(job);
-        Ticket(self.jobs.len() - 1)
+        CodeTicket(self.jobs.len() - 1)
     }
 
     /// Machine code for everything that was ordered, in that order; nothing where the machine is not supported, and
     /// all is then interpreted.
-    pub fn compile(&self, functions: &[Function]) -> Vec<Entry> {
+    pub fn compile(&self, functions: &[Function]) -> Vec<NativeEntry> {
         self.try_compile(functions).unwrap_or_default()
     }
 
-    fn try_compile(&self, functions: &[Function]) -> Built<Vec<Entry>> {
+    fn try_compile(&self, functions: &[Function]) -> ModuleResult<Vec<NativeEntry>> {
         if self.jobs.is_empty() || !SUPPORTED {
             return Ok(Vec::new());
         }
@@ -143,8 +143,8 @@ impl Compiler {
         for import in IMPORTS {
             builder.symbol(import.name, (import.address)());
         }
-        let mut foundry = Foundry::new(JITModule::new(builder), functions)?;
-        let ids = self.jobs.iter().map(|job| foundry.define(job)).collect::<Built<Vec<FuncId>>>()?;
+        let mut foundry = NativeModuleBuilder::new(JITModule::new(builder), functions)?;
+        let ids = self.jobs.iter().map(|job| foundry.define(job)).collect::<ModuleResult<Vec<FuncId>>>()?;
         foundry.finish(&ids)
     }
 }
@@ -161,18 +161,18 @@ const FLAGS: [(&str, &str); 5] = [
 ];
 
 /// A function called from machine code.
-struct Import {
+struct NativeImport {
     name: &'static str,
     address: fn() -> *const u8,
     /// Number of arguments; 0 for [`call_function`].
     arguments: usize,
 }
 
-const fn import(name: &'static str, arguments: usize, address: fn() -> *const u8) -> Import {
-    Import { name, address, arguments }
+const fn import(name: &'static str, arguments: usize, address: fn() -> *const u8) -> NativeImport {
+    NativeImport { name, address, arguments }
 }
 
-const IMPORTS: &[Import] = &[
+const IMPORTS: &[NativeImport] = &[
     import("exp", 1, || math::exp as *const u8),
     import("log", 1, || math::log as *const u8),
     import("log10", 1, || math::log10 as *const u8),
@@ -197,7 +197,7 @@ pub const CALL_FUNCTION: &str = "call_function";
 /// A call of a user function out of machine code.
 #[allow(unsafe_code, reason = "raw pointers come from machine code")]
 unsafe extern "C" fn call_function(list: *const FunctionList, function: u32, args: *const f64, out: *mut f64) {
-    // SAFETY: `list` is the one that `Entry::call` passed in; machine code passes stack slots of the function's number
+    // SAFETY: `list` is the one that `NativeEntry::call` passed in; machine code passes stack slots of the function's number
     // of inputs and outputs.
     unsafe {
         let functions = (*list).functions;
@@ -210,7 +210,7 @@ unsafe extern "C" fn call_function(list: *const FunctionList, function: u32, arg
 }
 
 /// Defines functions in a module.
-struct Foundry<'f> {
+struct NativeModuleBuilder<'f> {
     module: JITModule,
     functions: &'f [Function],
     context: FunctionBuilderContext,
@@ -218,18 +218,18 @@ struct Foundry<'f> {
     pointer: Type,
 }
 
-impl<'f> Foundry<'f> {
-    fn new(mut module: JITModule, functions: &'f [Function]) -> Built<Self> {
+impl<'f> NativeModuleBuilder<'f> {
+    fn new(mut module: JITModule, functions: &'f [Function]) -> ModuleResult<Self> {
         let pointer = module.target_config().pointer_type();
         let mut imports = FxHashMap::default();
-        for &Import { name, arguments, .. } in IMPORTS {
+        for &NativeImport { name, arguments, .. } in IMPORTS {
             let signature = import_signature(&module, pointer, arguments);
             imports.insert(name, module.declare_function(name, Linkage::Import, &signature)?);
         }
-        Ok(Foundry { module, functions, context: FunctionBuilderContext::new(), imports, pointer })
+        Ok(NativeModuleBuilder { module, functions, context: FunctionBuilderContext::new(), imports, pointer })
     }
 
-    fn define(&mut self, job: &Job) -> Built<FuncId> {
+    fn define(&mut self, job: &NativeJob) -> ModuleResult<FuncId> {
         let mut context = self.module.make_context();
         for _ in 0..4 {
             context.func.signature.params.push(AbiParam::new(self.pointer));
@@ -238,10 +238,10 @@ impl<'f> Foundry<'f> {
         context.func.name = UserFuncName::user(0, id.as_u32());
         let config = self.module.target_config();
         let builder = FunctionBuilder::new(&mut context.func, &mut self.context);
-        let mut translator = Translator::new(builder, &mut self.module, &self.imports, self.functions);
+        let mut translator = NativeTranslator::new(builder, &mut self.module, &self.imports, self.functions);
         match job {
-            Job::Straight { code, targets } => translator.straight(code, targets),
-            Job::Loop { code, inputs } => translator.looped(code, *inputs),
+            NativeJob::Straight { code, targets } => translator.straight(code, targets),
+            NativeJob::Loop { code, inputs } => translator.looped(code, *inputs),
         }
         translator.builder.finalize(config);
         self.module.define_function(id, &mut context)?;
@@ -250,14 +250,14 @@ impl<'f> Foundry<'f> {
     }
 
     #[allow(unsafe_code, reason = "an address becomes a function")]
-    fn finish(mut self, ids: &[FuncId]) -> Built<Vec<Entry>> {
+    fn finish(mut self, ids: &[FuncId]) -> ModuleResult<Vec<NativeEntry>> {
         self.module.finalize_definitions()?;
         let addresses: Vec<*const u8> = ids.iter().map(|&id| self.module.get_finalized_function(id)).collect();
-        let memory = Arc::new(Memory { module: Some(self.module) });
+        let memory = Arc::new(ExecutableMemory { module: Some(self.module) });
         let entry = |address| {
-            // SAFETY: each function was defined with the signature of `Native`.
-            let function = unsafe { std::mem::transmute::<*const u8, Native>(address) };
-            Entry { function, _memory: memory.clone() }
+            // SAFETY: each function was defined with the signature of `NativeFunction`.
+            let function = unsafe { std::mem::transmute::<*const u8, NativeFunction>(address) };
+            NativeEntry { function, _memory: memory.clone() }
         };
         Ok(addresses.into_iter().map(entry).collect())
     }

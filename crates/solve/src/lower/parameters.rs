@@ -1,10 +1,10 @@
 //! Parameters from their bindings, one by one so that any of them can be overridden.
 
-use super::code::Code;
+use super::code::KernelCode;
 use super::interpret::Bytecode;
-use super::layout::{Layout, Slot, slot};
-use super::program::Defs;
-use super::shape::{KernelId, Kernels, Rules, Shaper};
+use super::layout::{ValueLayout, ValueSlot, slot};
+use super::program::KernelDefinitions;
+use super::shape::{KernelId, KernelShaper, KernelTable, ShapingRules};
 use bramah_expr::VarId;
 use bramah_expr::function::Function;
 use bramah_model::structure::Dae;
@@ -12,19 +12,19 @@ use rustc_hash::FxHashMap;
 
 /// The bindings of all dependent parameters, in order.
 #[derive(Clone, Debug, Default)]
-pub struct Bindings {
+pub struct BindingEvaluator {
     parameters: Vec<(VarId, KernelId, u32)>,
     /// Per parameter the slots of the binding's inputs, then its own.
-    table: Vec<Slot>,
+    table: Vec<ValueSlot>,
     codes: FxHashMap<KernelId, (usize, Bytecode)>,
     scratch: usize,
 }
 
 /// The definitions of `dae.parameters`.
-pub fn draft(dae: &Dae, shaper: &mut Shaper) -> (Vec<VarId>, Defs) {
+pub fn draft(dae: &Dae, shaper: &mut KernelShaper) -> (Vec<VarId>, KernelDefinitions) {
     let inline = FxHashMap::default();
-    let rules = Rules { initial: false, inline: &inline, hoist: false };
-    let (mut variables, mut defs) = (Vec::new(), Defs::default());
+    let rules = ShapingRules { initial: false, inline: &inline, hoist: false };
+    let (mut variables, mut defs) = (Vec::new(), KernelDefinitions::default());
     for &v in &dae.parameters {
         if let Some(binding) = dae.variables[v.index()].binding {
             let shaped = shaper.shape(binding, &rules);
@@ -36,14 +36,19 @@ pub fn draft(dae: &Dae, shaper: &mut Shaper) -> (Vec<VarId>, Defs) {
     (variables, defs)
 }
 
-impl Bindings {
+impl BindingEvaluator {
     /// The code of the definitions that [`draft`] made.
-    pub fn new(variables: &[VarId], defs: &Defs, kernels: &Kernels, layout: &Layout) -> Bindings {
-        let mut bindings = Bindings::default();
+    pub fn new(
+        variables: &[VarId],
+        defs: &KernelDefinitions,
+        kernels: &KernelTable,
+        layout: &ValueLayout,
+    ) -> BindingEvaluator {
+        let mut bindings = BindingEvaluator::default();
         for (i, &v) in variables.iter().enumerate() {
             let (kernel, inputs, targets) = defs.get(kernels, i);
             bindings.codes.entry(kernel).or_insert_with(|| {
-                let code = Code::new(&kernels.pool, &kernels.get(kernel).outputs);
+                let code = KernelCode::new(&kernels.pool, &kernels.get(kernel).outputs);
                 (inputs.len(), Bytecode::looped(&code, slot(inputs.len()), layout))
             });
             bindings.parameters.push((v, kernel, slot(bindings.table.len())));
@@ -59,7 +64,7 @@ impl Bindings {
     }
 
     /// Tells where the scratch region begins.
-    pub fn relocate(&mut self, base: Slot) {
+    pub fn relocate(&mut self, base: ValueSlot) {
         self.scratch = base as usize;
         self.codes.values_mut().for_each(|(_, code)| code.relocate(base));
     }

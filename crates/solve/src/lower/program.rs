@@ -3,13 +3,13 @@
 //! Definitions of one shape that do not wait for each other run as one loop over a table of slots; the rest is merged
 //! into straight code of limited size, in which values pass in registers.
 
-use super::code::Code;
+use super::code::KernelCode;
 use super::interpret::Bytecode;
-use super::layout::{Layout, Slot, slot};
-use super::native::{Compiler, Entry, Ticket};
-use super::shape::{Kernel, KernelId, Kernels, Shaped, copy_node};
+use super::layout::{ValueLayout, ValueSlot, slot};
+use super::native::{CodeTicket, NativeCompiler, NativeEntry};
+use super::shape::{Kernel, KernelExpression, KernelId, KernelTable, copy_node};
 use bramah_expr::function::Function;
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -43,19 +43,25 @@ const SOON_COMPILED: u32 = 100;
 
 /// Definitions to be computed: each a kernel with the slots it reads and writes.
 #[derive(Clone, Debug, Default)]
-pub struct Defs {
+pub struct KernelDefinitions {
     items: Vec<(KernelId, u32)>,
-    slots: Vec<Slot>,
+    slots: Vec<ValueSlot>,
 }
 
-impl Defs {
+impl KernelDefinitions {
     /// Adds the definition of one slot.
-    pub fn define(&mut self, kernels: &mut Kernels, target: Slot, shaped: &Shaped) {
+    pub fn define(&mut self, kernels: &mut KernelTable, target: ValueSlot, shaped: &KernelExpression) {
         self.push(kernels, vec![shaped.expr], &shaped.inputs, &[target]);
     }
 
     /// Adds a definition of several slots.
-    pub fn push(&mut self, kernels: &mut Kernels, outputs: Vec<ExprId>, inputs: &[Slot], targets: &[Slot]) {
+    pub fn push(
+        &mut self,
+        kernels: &mut KernelTable,
+        outputs: Vec<ExprId>,
+        inputs: &[ValueSlot],
+        targets: &[ValueSlot],
+    ) {
         let kernel = kernels.intern(Kernel { inputs: slot(inputs.len()), outputs });
         self.items.push((kernel, slot(self.slots.len())));
         self.slots.extend_from_slice(inputs);
@@ -63,14 +69,14 @@ impl Defs {
     }
 
     /// Adds all definitions of another list.
-    pub fn append(&mut self, other: &Defs) {
+    pub fn append(&mut self, other: &KernelDefinitions) {
         let shift = slot(self.slots.len());
         self.items.extend(other.items.iter().map(|&(kernel, start)| (kernel, start + shift)));
         self.slots.extend_from_slice(&other.slots);
     }
 
     /// All slots that are read or written.
-    pub fn slots(&self) -> &[Slot] {
+    pub fn slots(&self) -> &[ValueSlot] {
         &self.slots
     }
 
@@ -80,7 +86,7 @@ impl Defs {
     }
 
     /// The definition with this number: kernel, inputs, targets.
-    pub fn get(&self, kernels: &Kernels, i: usize) -> (KernelId, &[Slot], &[Slot]) {
+    pub fn get(&self, kernels: &KernelTable, i: usize) -> (KernelId, &[ValueSlot], &[ValueSlot]) {
         let (kernel, start) = self.items[i];
         let shape = kernels.get(kernel);
         let row = &self.slots[start as usize..][..shape.inputs as usize + shape.outputs.len()];
@@ -89,8 +95,8 @@ impl Defs {
     }
 
     /// The definitions with these numbers, in this order.
-    pub fn select(&self, kernels: &Kernels, chosen: impl IntoIterator<Item = usize>) -> Defs {
-        let mut defs = Defs::default();
+    pub fn select(&self, kernels: &KernelTable, chosen: impl IntoIterator<Item = usize>) -> KernelDefinitions {
+        let mut defs = KernelDefinitions::default();
         for i in chosen {
             let (kernel, inputs, targets) = self.get(kernels, i);
             defs.items.push((kernel, slot(defs.slots.len())));
@@ -103,14 +109,14 @@ impl Defs {
 
 /// Sums of products: `v[target] = sum of v[a] * v[b]`, from left to right, one after the other.
 #[derive(Clone, Debug, Default)]
-pub struct Products {
+pub struct ProductSums {
     /// Per sum, its slot and one past its last factor pair.
-    pub sums: Vec<(Slot, u32)>,
+    pub sums: Vec<(ValueSlot, u32)>,
     /// The pairs of factors.
-    pub factors: Vec<(Slot, Slot)>,
+    pub factors: Vec<(ValueSlot, ValueSlot)>,
 }
 
-impl Products {
+impl ProductSums {
     fn run(&self, v: &mut [f64]) {
         let mut start = 0;
         for &(target, end) in &self.sums {
@@ -124,53 +130,53 @@ impl Products {
 /// Something to compute, reading and writing slots of one array of values. Cheap to clone; shared between threads.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
-    steps: Arc<Vec<Step>>,
-    late: Option<Arc<Late>>,
+    steps: Arc<Vec<ProgramStep>>,
+    late: Option<Arc<LazyNativeCode>>,
     functions: Arc<Vec<Function>>,
     len: usize,
 }
 
 #[derive(Debug)]
-enum Step {
-    Straight { bytecode: Bytecode, native: Native },
-    Loop(Loop),
-    Products(Products),
+enum ProgramStep {
+    Straight { bytecode: Bytecode, native: NativeStatus },
+    Loop(KernelLoop),
+    Products(ProductSums),
 }
 
 #[derive(Debug)]
-struct Loop {
+struct KernelLoop {
     kernel: KernelId,
     bytecode: Bytecode,
-    native: Native,
+    native: NativeStatus,
     inputs: usize,
     outputs: usize,
     /// Per instance its inputs, then its targets.
-    table: Vec<Slot>,
+    table: Vec<ValueSlot>,
     scratch: usize,
 }
 
 #[derive(Debug)]
-enum Native {
+enum NativeStatus {
     None,
-    Ordered(Ticket),
-    Ready(Entry),
-    /// Among the [`Late`] ones.
-    Late(Ticket),
+    Ordered(CodeTicket),
+    Ready(NativeEntry),
+    /// Among the [`LazyNativeCode`] ones.
+    Late(CodeTicket),
 }
 
-impl Native {
-    fn finish(&mut self, entries: &[Entry]) {
-        if let Native::Ordered(ticket) = self {
-            *self = entries.get(ticket.index()).map_or(Native::None, |entry| Native::Ready(entry.clone()));
+impl NativeStatus {
+    fn finish(&mut self, entries: &[NativeEntry]) {
+        if let NativeStatus::Ordered(ticket) = self {
+            *self = entries.get(ticket.index()).map_or(NativeStatus::None, |entry| NativeStatus::Ready(entry.clone()));
         }
     }
 
     /// The machine code, if it has been made.
-    fn entry<'a>(&'a self, late: &'a [Entry]) -> Option<&'a Entry> {
+    fn entry<'a>(&'a self, late: &'a [NativeEntry]) -> Option<&'a NativeEntry> {
         match self {
-            Native::Ready(entry) => Some(entry),
-            Native::Late(ticket) => late.get(ticket.index()),
-            Native::None | Native::Ordered(_) => None,
+            NativeStatus::Ready(entry) => Some(entry),
+            NativeStatus::Late(ticket) => late.get(ticket.index()),
+            NativeStatus::None | NativeStatus::Ordered(_) => None,
         }
     }
 }
@@ -178,21 +184,21 @@ impl Native {
 /// Machine code that is made when its program has run often, by whichever thread comes to it first. Results do not
 /// depend on when that is, for interpreter and machine code agree to the bit.
 #[derive(Debug)]
-struct Late {
-    compiler: Compiler,
+struct LazyNativeCode {
+    compiler: NativeCompiler,
     runs: AtomicU32,
     /// Runs before it is made.
     limit: u32,
-    entries: OnceLock<Vec<Entry>>,
+    entries: OnceLock<Vec<NativeEntry>>,
 }
 
-impl Late {
-    fn new(compiler: Compiler, limit: u32) -> Arc<Late> {
-        Arc::new(Late { compiler, runs: AtomicU32::new(0), limit, entries: OnceLock::new() })
+impl LazyNativeCode {
+    fn new(compiler: NativeCompiler, limit: u32) -> Arc<LazyNativeCode> {
+        Arc::new(LazyNativeCode { compiler, runs: AtomicU32::new(0), limit, entries: OnceLock::new() })
     }
 
     /// Counts a run.
-    fn entries(&self, functions: &[Function]) -> &[Entry] {
+    fn entries(&self, functions: &[Function]) -> &[NativeEntry] {
         if let Some(entries) = self.entries.get() {
             return entries;
         }
@@ -207,15 +213,15 @@ impl Program {
     /// Computes. `values` is an array of the layout the program was made for.
     pub fn run(&self, values: &mut [f64]) {
         assert!(values.len() >= self.len, "the array of values belongs to another system");
-        let late = self.late.as_ref().map_or(&[] as &[Entry], |late| late.entries(&self.functions));
+        let late = self.late.as_ref().map_or(&[] as &[NativeEntry], |late| late.entries(&self.functions));
         for step in self.steps.iter() {
             match step {
-                Step::Straight { bytecode, native } => match native.entry(late) {
+                ProgramStep::Straight { bytecode, native } => match native.entry(late) {
                     Some(entry) => entry.run(values, &self.functions),
                     None => bytecode.run(&self.functions, values),
                 },
-                Step::Loop(l) => l.run(late, &self.functions, values),
-                Step::Products(products) => products.run(values),
+                ProgramStep::Loop(l) => l.run(late, &self.functions, values),
+                ProgramStep::Products(products) => products.run(values),
             }
         }
     }
@@ -233,9 +239,9 @@ impl Program {
 
     /// Number of instructions; those of a loop count once.
     pub fn size(&self) -> usize {
-        let size = |step: &Step| match step {
-            Step::Straight { bytecode, .. } | Step::Loop(Loop { bytecode, .. }) => bytecode.len(),
-            Step::Products(_) => 0,
+        let size = |step: &ProgramStep| match step {
+            ProgramStep::Straight { bytecode, .. } | ProgramStep::Loop(KernelLoop { bytecode, .. }) => bytecode.len(),
+            ProgramStep::Products(_) => 0,
         };
         self.steps.iter().map(size).sum()
     }
@@ -247,9 +253,11 @@ impl Program {
 
     /// How many scratch places the interpreter needs.
     pub(super) fn scratch(&self) -> u32 {
-        let need = |step: &Step| match step {
-            Step::Straight { bytecode, .. } | Step::Loop(Loop { bytecode, .. }) => bytecode.scratch(),
-            Step::Products(_) => 0,
+        let need = |step: &ProgramStep| match step {
+            ProgramStep::Straight { bytecode, .. } | ProgramStep::Loop(KernelLoop { bytecode, .. }) => {
+                bytecode.scratch()
+            }
+            ProgramStep::Products(_) => 0,
         };
         self.steps.iter().map(need).max().unwrap_or(0)
     }
@@ -257,33 +265,39 @@ impl Program {
     /// Last touch: where the scratch region begins, how long the array is, what has been compiled.
     ///
     /// Does nothing to a program that has been cloned before.
-    pub(super) fn finish(&mut self, scratch: Slot, len: usize, functions: &Arc<Vec<Function>>, entries: &[Entry]) {
+    pub(super) fn finish(
+        &mut self,
+        scratch: ValueSlot,
+        len: usize,
+        functions: &Arc<Vec<Function>>,
+        entries: &[NativeEntry],
+    ) {
         self.functions = functions.clone();
         self.len = len;
         let Some(steps) = Arc::get_mut(&mut self.steps) else { return };
         for step in steps {
             match step {
-                Step::Straight { bytecode, native } => {
+                ProgramStep::Straight { bytecode, native } => {
                     bytecode.relocate(scratch);
                     native.finish(entries);
                 }
-                Step::Loop(l) => {
+                ProgramStep::Loop(l) => {
                     l.scratch = scratch as usize;
                     l.bytecode.relocate(scratch);
                     l.native.finish(entries);
                 }
-                Step::Products(_) => {}
+                ProgramStep::Products(_) => {}
             }
         }
     }
 }
 
-impl Loop {
+impl KernelLoop {
     fn rows(&self) -> usize {
         self.table.len() / (self.inputs + self.outputs)
     }
 
-    fn run(&self, late: &[Entry], functions: &[Function], v: &mut [f64]) {
+    fn run(&self, late: &[NativeEntry], functions: &[Function], v: &mut [f64]) {
         if let Some(entry) = self.native.entry(late) {
             return entry.run_table(v, &self.table, self.inputs + self.outputs, functions);
         }
@@ -301,7 +315,7 @@ impl Loop {
 }
 
 /// How many scratch places programs may need that compute some of `defs` and are made after all others.
-pub fn late_scratch(defs: &Defs, kernels: &Kernels) -> usize {
+pub fn late_scratch(defs: &KernelDefinitions, kernels: &KernelTable) -> usize {
     let distinct: BTreeSet<KernelId> = defs.items.iter().map(|&(kernel, _)| kernel).collect();
     let size = |&kernel: &KernelId| kernels.pool.reachable(&kernels.get(kernel).outputs, |_| true).len();
     PLACES_PER_NODE * (LATE_STRAIGHT_SIZE + distinct.iter().map(size).max().unwrap_or(0))
@@ -309,7 +323,7 @@ pub fn late_scratch(defs: &Defs, kernels: &Kernels) -> usize {
 
 /// How definitions are ordered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Order {
+pub enum DefinitionOrder {
     /// By dependency: each slot is defined before it is read, and equal shapes come together.
     Dependency,
     /// As given: slots may be read before they are defined (values of the last turn of an iteration).
@@ -317,36 +331,36 @@ pub enum Order {
 }
 
 /// Makes programs.
-pub struct Assembler<'a> {
-    kernels: &'a Kernels,
-    layout: &'a Layout,
-    codes: FxHashMap<KernelId, Arc<Code>>,
-    tickets: BTreeMap<KernelId, Ticket>,
-    compiler: Compiler,
+pub struct ProgramAssembler<'a> {
+    kernels: &'a KernelTable,
+    layout: &'a ValueLayout,
+    codes: FxHashMap<KernelId, Arc<KernelCode>>,
+    tickets: BTreeMap<KernelId, CodeTicket>,
+    compiler: NativeCompiler,
     /// Whether anything is compiled to machine code.
     native: bool,
     /// What the program that is being made compiles when it has run often.
-    late: Compiler,
-    late_loops: BTreeMap<KernelId, Ticket>,
+    late: NativeCompiler,
+    late_loops: BTreeMap<KernelId, CodeTicket>,
     limit: u32,
     ready: Option<&'a CompiledLoops>,
     straight_size: usize,
 }
 
 /// Loops in machine code, for programs that are made later.
-pub type CompiledLoops = FxHashMap<KernelId, Entry>;
+pub type CompiledLoops = FxHashMap<KernelId, NativeEntry>;
 
-impl<'a> Assembler<'a> {
+impl<'a> ProgramAssembler<'a> {
     /// Programs of `kernels` over `layout`; `native`: in machine code where that pays, else interpreted.
-    pub fn new(kernels: &'a Kernels, layout: &'a Layout, native: bool) -> Self {
-        Assembler {
+    pub fn new(kernels: &'a KernelTable, layout: &'a ValueLayout, native: bool) -> Self {
+        ProgramAssembler {
             kernels,
             layout,
             codes: FxHashMap::default(),
             tickets: BTreeMap::new(),
-            compiler: Compiler::default(),
+            compiler: NativeCompiler::default(),
             native,
-            late: Compiler::default(),
+            late: NativeCompiler::default(),
             late_loops: BTreeMap::new(),
             limit: WORTH_COMPILING,
             ready: None,
@@ -356,20 +370,29 @@ impl<'a> Assembler<'a> {
 
     /// For programs that are made after all others: with loops that are compiled already, and with pieces of straight
     /// code so short that [`late_scratch`] suffices.
-    pub fn with_loops(kernels: &'a Kernels, layout: &'a Layout, native: bool, ready: &'a CompiledLoops) -> Self {
-        Assembler { ready: Some(ready), straight_size: LATE_STRAIGHT_SIZE, ..Assembler::new(kernels, layout, native) }
+    pub fn with_loops(
+        kernels: &'a KernelTable,
+        layout: &'a ValueLayout,
+        native: bool,
+        ready: &'a CompiledLoops,
+    ) -> Self {
+        ProgramAssembler {
+            ready: Some(ready),
+            straight_size: LATE_STRAIGHT_SIZE,
+            ..ProgramAssembler::new(kernels, layout, native)
+        }
     }
 
     /// Compiles what was to be compiled: all of it in the order of tickets, and loops by kernel.
-    pub fn compile(self, functions: &[Function]) -> (Vec<Entry>, CompiledLoops) {
+    pub fn compile(self, functions: &[Function]) -> (Vec<NativeEntry>, CompiledLoops) {
         let entries = self.compiler.compile(functions);
-        let entry = |(&kernel, ticket): (&KernelId, &Ticket)| Some((kernel, entries.get(ticket.index())?.clone()));
+        let entry = |(&kernel, ticket): (&KernelId, &CodeTicket)| Some((kernel, entries.get(ticket.index())?.clone()));
         let loops = self.tickets.iter().filter_map(entry).collect();
         (entries, loops)
     }
 
     /// The kernels that programs are made of.
-    pub fn kernels(&self) -> &'a Kernels {
+    pub fn kernels(&self) -> &'a KernelTable {
         self.kernels
     }
 
@@ -379,10 +402,15 @@ impl<'a> Assembler<'a> {
     }
 
     /// The program that computes `defs`, then `products`.
-    pub fn assemble(&mut self, defs: &Defs, order: Order, products: Option<Products>) -> Program {
+    pub fn assemble(
+        &mut self,
+        defs: &KernelDefinitions,
+        order: DefinitionOrder,
+        products: Option<ProductSums>,
+    ) -> Program {
         let mut steps = Vec::new();
         let looped = self.looped(defs, order);
-        let mut straight = Straight::default();
+        let mut straight = StraightLineCode::default();
         for i in self.schedule(defs, order, &looped) {
             let (kernel, inputs, targets) = defs.get(self.kernels, i);
             if looped.contains(&kernel) {
@@ -397,27 +425,27 @@ impl<'a> Assembler<'a> {
         }
         self.flush(&mut straight, &mut steps);
         for step in &mut steps {
-            if let Step::Loop(l) = step {
+            if let ProgramStep::Loop(l) = step {
                 l.native = self.order_loop(l);
             }
         }
-        steps.extend(products.filter(|p| !p.sums.is_empty()).map(Step::Products));
+        steps.extend(products.filter(|p| !p.sums.is_empty()).map(ProgramStep::Products));
         self.late_loops.clear();
         let late = std::mem::take(&mut self.late);
-        let late = (!late.is_empty()).then(|| Late::new(late, self.limit));
+        let late = (!late.is_empty()).then(|| LazyNativeCode::new(late, self.limit));
         Program { steps: Arc::new(steps), late, ..Program::default() }
     }
 
-    fn code(&mut self, kernel: KernelId) -> Arc<Code> {
+    fn code(&mut self, kernel: KernelId) -> Arc<KernelCode> {
         let kernels = self.kernels;
-        let make = || Arc::new(Code::new(&kernels.pool, &kernels.get(kernel).outputs));
+        let make = || Arc::new(KernelCode::new(&kernels.pool, &kernels.get(kernel).outputs));
         self.codes.entry(kernel).or_insert_with(make).clone()
     }
 
     /// The kernels that are worth a loop.
-    fn looped(&mut self, defs: &Defs, order: Order) -> FxHashSet<KernelId> {
+    fn looped(&mut self, defs: &KernelDefinitions, order: DefinitionOrder) -> FxHashSet<KernelId> {
         let mut counts: FxHashMap<KernelId, usize> = FxHashMap::default();
-        if order == Order::Dependency {
+        if order == DefinitionOrder::Dependency {
             defs.items.iter().for_each(|&(kernel, _)| *counts.entry(kernel).or_default() += 1);
         }
         counts.retain(|_, count| *count >= LOOP_INSTANCES);
@@ -426,9 +454,9 @@ impl<'a> Assembler<'a> {
     }
 
     /// The order of computation: by level, loops before straight code, equal kernels together.
-    fn schedule(&self, defs: &Defs, order: Order, looped: &FxHashSet<KernelId>) -> Vec<usize> {
+    fn schedule(&self, defs: &KernelDefinitions, order: DefinitionOrder, looped: &FxHashSet<KernelId>) -> Vec<usize> {
         let mut sequence: Vec<usize> = (0..defs.len()).collect();
-        if order == Order::Given || looped.is_empty() {
+        if order == DefinitionOrder::Given || looped.is_empty() {
             return sequence;
         }
         let levels = self.levels(defs);
@@ -445,7 +473,7 @@ impl<'a> Assembler<'a> {
     }
 
     /// One more than the highest level of what a definition reads.
-    fn levels(&self, defs: &Defs) -> Vec<u32> {
+    fn levels(&self, defs: &KernelDefinitions) -> Vec<u32> {
         let mut defined = vec![0u32; self.layout.len()];
         let mut levels = Vec::with_capacity(defs.len());
         for i in 0..defs.len() {
@@ -457,76 +485,90 @@ impl<'a> Assembler<'a> {
         levels
     }
 
-    fn push_loop(&mut self, kernel: KernelId, inputs: &[Slot], targets: &[Slot], steps: &mut Vec<Step>) {
-        let open = matches!(steps.last(), Some(Step::Loop(l)) if l.kernel == kernel);
+    fn push_loop(
+        &mut self,
+        kernel: KernelId,
+        inputs: &[ValueSlot],
+        targets: &[ValueSlot],
+        steps: &mut Vec<ProgramStep>,
+    ) {
+        let open = matches!(steps.last(), Some(ProgramStep::Loop(l)) if l.kernel == kernel);
         if !open {
             let code = self.code(kernel);
             let bytecode = Bytecode::looped(&code, slot(inputs.len()), self.layout);
             let (inputs, outputs) = (inputs.len(), targets.len());
-            let native = Native::None;
-            steps.push(Step::Loop(Loop { kernel, bytecode, native, inputs, outputs, table: Vec::new(), scratch: 0 }));
+            let native = NativeStatus::None;
+            steps.push(ProgramStep::Loop(KernelLoop {
+                kernel,
+                bytecode,
+                native,
+                inputs,
+                outputs,
+                table: Vec::new(),
+                scratch: 0,
+            }));
         }
-        if let Some(Step::Loop(l)) = steps.last_mut() {
+        if let Some(ProgramStep::Loop(l)) = steps.last_mut() {
             l.table.extend_from_slice(inputs);
             l.table.extend_from_slice(targets);
         }
     }
 
-    fn order_loop(&mut self, l: &Loop) -> Native {
+    fn order_loop(&mut self, l: &KernelLoop) -> NativeStatus {
         if let Some(entry) = self.ready.and_then(|ready| ready.get(&l.kernel)) {
-            return Native::Ready(entry.clone());
+            return NativeStatus::Ready(entry.clone());
         }
         let code = self.code(l.kernel);
         if !self.native || code.size > 2 * STRAIGHT_SIZE {
-            return Native::None;
+            return NativeStatus::None;
         }
         let inputs = slot(l.inputs);
         if l.rows() < ALWAYS_COMPILED && !self.tickets.contains_key(&l.kernel) {
             let order = || self.late.order_loop(code, inputs);
-            return Native::Late(*self.late_loops.entry(l.kernel).or_insert_with(order));
+            return NativeStatus::Late(*self.late_loops.entry(l.kernel).or_insert_with(order));
         }
         let order = || self.compiler.order_loop(code, inputs);
-        Native::Ordered(*self.tickets.entry(l.kernel).or_insert_with(order))
+        NativeStatus::Ordered(*self.tickets.entry(l.kernel).or_insert_with(order))
     }
 
-    fn flush(&mut self, straight: &mut Straight, steps: &mut Vec<Step>) {
-        let Straight { pool, targets, outputs, .. } = std::mem::take(straight);
+    fn flush(&mut self, straight: &mut StraightLineCode, steps: &mut Vec<ProgramStep>) {
+        let StraightLineCode { pool, targets, outputs, .. } = std::mem::take(straight);
         if targets.is_empty() {
             return;
         }
-        let code = Code::new(&pool, &outputs);
+        let code = KernelCode::new(&pool, &outputs);
         let bytecode = Bytecode::straight(&code, &targets, self.layout);
         let native = if self.native && code.size <= 2 * STRAIGHT_SIZE {
-            Native::Late(self.late.order_straight(Arc::new(code), targets))
+            NativeStatus::Late(self.late.order_straight(Arc::new(code), targets))
         } else {
-            Native::None
+            NativeStatus::None
         };
-        steps.push(Step::Straight { bytecode, native });
+        steps.push(ProgramStep::Straight { bytecode, native });
     }
 }
 
 /// Straight code that is being collected: expressions whose leaves are slots.
 #[derive(Default)]
-struct Straight {
+struct StraightLineCode {
     pool: Exprs,
-    targets: Vec<Slot>,
+    targets: Vec<ValueSlot>,
     outputs: Vec<ExprId>,
     /// What has been computed for a slot so far.
-    current: FxHashMap<Slot, ExprId>,
+    current: FxHashMap<ValueSlot, ExprId>,
 }
 
-impl Straight {
+impl StraightLineCode {
     /// Whether a definition of these slots fits in.
-    fn takes(&self, targets: &[Slot], size: usize) -> bool {
+    fn takes(&self, targets: &[ValueSlot], size: usize) -> bool {
         self.pool.len() < size && !targets.iter().any(|target| self.current.contains_key(target))
     }
 
-    fn add(&mut self, kernels: &Kernels, kernel: KernelId, inputs: &[Slot], targets: &[Slot]) {
+    fn add(&mut self, kernels: &KernelTable, kernel: KernelId, inputs: &[ValueSlot], targets: &[ValueSlot]) {
         let shape = kernels.get(kernel);
         let mut copies: FxHashMap<ExprId, ExprId> = FxHashMap::default();
         for e in kernels.pool.reachable(&shape.outputs, |_| true) {
             let copy = match kernels.pool.node(e) {
-                Node::Var(VarId(input)) => self.leaf(inputs[input as usize]),
+                ExprNode::Var(VarId(input)) => self.leaf(inputs[input as usize]),
                 _ => copy_node(&kernels.pool, e, &mut self.pool, |operand| copies[&operand]),
             };
             copies.insert(e, copy);
@@ -539,7 +581,7 @@ impl Straight {
         }
     }
 
-    fn leaf(&mut self, slot: Slot) -> ExprId {
+    fn leaf(&mut self, slot: ValueSlot) -> ExprId {
         match self.current.get(&slot) {
             Some(&known) => known,
             None => self.pool.var(VarId(slot)),

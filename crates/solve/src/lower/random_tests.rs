@@ -4,9 +4,9 @@
 use super::tests::{Model, check_jacobian, point, values_of};
 use super::*;
 use approx::relative_eq;
-use bramah_expr::function::{Function, Stmt, Term};
-use bramah_expr::{Binary, Exprs, FunctionId, Rel, Unary};
-use bramah_model::structure::Block;
+use bramah_expr::function::{Function, SlotExpr, SlotStatement};
+use bramah_expr::{BinaryFunction, Exprs, FunctionId, RelationalOp, UnaryFunction};
+use bramah_model::structure::BltBlock;
 use proptest::prelude::*;
 
 /// One step of building an expression on a stack of known ones.
@@ -30,31 +30,35 @@ fn make() -> impl Strategy<Value = Make> {
     ]
 }
 
-const BINARY: [Binary; 10] = [
-    Binary::Add,
-    Binary::Sub,
-    Binary::Mul,
-    Binary::Div,
-    Binary::Pow,
-    Binary::Atan2,
-    Binary::Min,
-    Binary::Max,
-    Binary::And,
-    Binary::Or,
+const BINARY: [BinaryFunction; 10] = [
+    BinaryFunction::Add,
+    BinaryFunction::Sub,
+    BinaryFunction::Mul,
+    BinaryFunction::Div,
+    BinaryFunction::Pow,
+    BinaryFunction::Atan2,
+    BinaryFunction::Min,
+    BinaryFunction::Max,
+    BinaryFunction::And,
+    BinaryFunction::Or,
 ];
 
-const RELATIONS: [Rel; 6] = [Rel::Lt, Rel::Le, Rel::Gt, Rel::Ge, Rel::Eq, Rel::Ne];
+const RELATIONS: [RelationalOp; 6] =
+    [RelationalOp::Lt, RelationalOp::Le, RelationalOp::Gt, RelationalOp::Ge, RelationalOp::Eq, RelationalOp::Ne];
 
 /// `(a, b) -> (a*b, if a > b then a else b)`
 fn function() -> Function {
-    let slot = |i| Box::new(Term::Slot(i));
-    let larger = Term::If(Box::new(Term::Rel(Rel::Gt, slot(0), slot(1))), slot(0), slot(1));
+    let slot = |i| Box::new(SlotExpr::Slot(i));
+    let larger = SlotExpr::If(Box::new(SlotExpr::Rel(RelationalOp::Gt, slot(0), slot(1))), slot(0), slot(1));
     Function {
         name: "both".into(),
         inputs: 2,
         slots: 4,
         outputs: vec![2, 3],
-        body: vec![Stmt::Assign(2, Term::Binary(Binary::Mul, slot(0), slot(1))), Stmt::Assign(3, larger)],
+        body: vec![
+            SlotStatement::Assign(2, SlotExpr::Binary(BinaryFunction::Mul, slot(0), slot(1))),
+            SlotStatement::Assign(3, larger),
+        ],
     }
 }
 
@@ -97,14 +101,14 @@ fn any_step(m: &mut Model, step: &Make, known: &[ExprId]) -> ExprId {
     match *step {
         // Only truth values are negated and joined, as the type check sees to.
         Make::Unary(1, a) => {
-            let truth = e.rel(Rel::Ge, of(a), Exprs::ONE);
+            let truth = e.rel(RelationalOp::Ge, of(a), Exprs::ONE);
             e.not(truth)
         }
         Make::Binary(op @ 8.., a, b) => {
-            let (left, right) = (e.rel(Rel::Lt, of(a), of(b)), e.rel(Rel::Ne, of(a), Exprs::ONE));
+            let (left, right) = (e.rel(RelationalOp::Lt, of(a), of(b)), e.rel(RelationalOp::Ne, of(a), Exprs::ONE));
             e.binary(BINARY[op as usize], left, right)
         }
-        Make::Unary(op, a) => e.unary(Unary::ALL[op as usize], of(a)),
+        Make::Unary(op, a) => e.unary(UnaryFunction::ALL[op as usize], of(a)),
         Make::Binary(op, a, b) => e.binary(BINARY[op as usize], of(a), of(b)),
         Make::If(rel, a, b, c, d) => {
             let condition = e.rel(RELATIONS[rel as usize], of(a), of(b));
@@ -121,7 +125,9 @@ fn smooth_step(m: &mut Model, step: &Make, known: &[ExprId]) -> ExprId {
     let e = &mut m.dae.exprs;
     match *step {
         Make::Unary(op, a) => {
-            let op = [Unary::Sin, Unary::Cos, Unary::Tanh, Unary::Neg, Unary::Atan][op as usize % 5];
+            let op =
+                [UnaryFunction::Sin, UnaryFunction::Cos, UnaryFunction::Tanh, UnaryFunction::Neg, UnaryFunction::Atan]
+                    [op as usize % 5];
             e.unary(op, of(a))
         }
         Make::Binary(op, a, b) if op % 3 == 0 => {
@@ -132,20 +138,24 @@ fn smooth_step(m: &mut Model, step: &Make, known: &[ExprId]) -> ExprId {
             e.div(of(a), root)
         }
         Make::Binary(op, a, b) => {
-            let value = e.binary([Binary::Add, Binary::Mul, Binary::Sub][op as usize % 3], of(a), of(b));
-            e.unary(Unary::Tanh, value)
+            let value = e.binary(
+                [BinaryFunction::Add, BinaryFunction::Mul, BinaryFunction::Sub][op as usize % 3],
+                of(a),
+                of(b),
+            );
+            e.unary(UnaryFunction::Tanh, value)
         }
         Make::If(_, a, b, ..) => {
             let time = e.time();
-            let early = e.rel(Rel::Lt, time, Exprs::ONE);
-            let sine = e.unary(Unary::Sin, of(a));
+            let early = e.rel(RelationalOp::Lt, time, Exprs::ONE);
+            let sine = e.unary(UnaryFunction::Sin, of(a));
             let product = e.mul(sine, of(b));
             e.if_(early, product, of(b))
         }
         Make::Number(value) => e.num(value),
         Make::Call(a, b, _) => {
             let product = e.call(FunctionId(0), 0, &[of(a), of(b)]);
-            e.unary(Unary::Sin, product)
+            e.unary(UnaryFunction::Sin, product)
         }
     }
 }
@@ -155,7 +165,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
 }
 
 /// Whether an expression and all its parts have finite values.
-fn is_of_numbers(system: &System, e: ExprId, values: &[f64]) -> bool {
+fn is_of_numbers(system: &ExecutableSystem, e: ExprId, values: &[f64]) -> bool {
     let parts = system.dae.exprs.reachable(&[e], |_| true);
     parts.into_iter().all(|e| system.eval(e, values).is_finite())
 }
@@ -189,7 +199,7 @@ proptest! {
         let mut values = values_of(&system);
         system.observe(0.3, &y, &y, &mut values);
         for block in &system.dae.continuous {
-            let Block::Assign(assign) = block else { panic!("only assignments") };
+            let BltBlock::Assign(assign) = block else { panic!("only assignments") };
             let (got, expected) = (values[system.layout.unknown(assign.unknown)], system.eval(assign.value, &values));
             // Simplification takes `0*x` for 0 and `x >= x` for true whatever `x` is, and does not keep the sign of a zero that
             // something is divided by, so values that come from such as are not finite may differ.

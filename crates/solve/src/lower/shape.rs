@@ -4,9 +4,9 @@
 //! pool shares equal nodes, so two definitions have the same shape exactly when they end up as the same node. Parts
 //! that depend on parameters alone become leaves too: their values are computed once per set of parameters.
 
-use super::layout::{Layout, Slot, slot};
-use super::program::Defs;
-use bramah_expr::{ExprId, Exprs, Node, Rel, Unary, VarId};
+use super::layout::{ValueLayout, ValueSlot, slot};
+use super::program::KernelDefinitions;
+use bramah_expr::{ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction, VarId};
 use bramah_model::flat::Variability;
 use bramah_model::structure::Dae;
 use rustc_hash::FxHashMap;
@@ -25,7 +25,7 @@ pub struct Kernel {
 
 /// All kernels of a model.
 #[derive(Clone, Debug, Default)]
-pub struct Kernels {
+pub struct KernelTable {
     /// Holds their expressions; its functions are the model's and their derivatives.
     pub pool: Exprs,
     list: Vec<Kernel>,
@@ -33,7 +33,7 @@ pub struct Kernels {
     partials: FxHashMap<(ExprId, u32), ExprId>,
 }
 
-impl Kernels {
+impl KernelTable {
     /// The kernel with this index.
     pub fn get(&self, kernel: KernelId) -> &Kernel {
         &self.list[kernel as usize]
@@ -69,28 +69,28 @@ impl Kernels {
 
 /// An expression as a kernel's expression and the slots of its inputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shaped {
+pub struct KernelExpression {
     /// In the kernels' pool.
     pub expr: ExprId,
     /// The slot of each input.
-    pub inputs: Vec<Slot>,
+    pub inputs: Vec<ValueSlot>,
 }
 
 /// How leaves and phases are treated while shapes are made.
 #[derive(Clone, Copy, Debug)]
-pub struct Rules<'a> {
+pub struct ShapingRules<'a> {
     /// The initial system: `homotopy` depends on its parameter. Else it is its first argument.
     pub initial: bool,
     /// Explicit variables whose definition takes their place, by slot.
-    pub inline: &'a FxHashMap<Slot, ExprId>,
+    pub inline: &'a FxHashMap<ValueSlot, ExprId>,
     /// Parts that depend on parameters alone become leaves.
     pub hoist: bool,
 }
 
 /// What a node of the model turns into.
-enum Turn {
+enum ShapeNode {
     /// A leaf with this slot.
-    Leaf(Slot),
+    Leaf(ValueSlot),
     /// Another node of the model.
     Other(ExprId),
     /// A number.
@@ -102,20 +102,20 @@ enum Turn {
 }
 
 /// Makes shapes of a model's expressions.
-pub struct Shaper<'a> {
+pub struct KernelShaper<'a> {
     source: &'a Exprs,
     /// Slots, to which those of hoisted parts are added.
-    pub layout: Layout,
+    pub layout: ValueLayout,
     /// The kernels made so far.
-    pub kernels: Kernels,
+    pub kernels: KernelTable,
     /// Per node of the model: depends on parameters alone.
     fixed: Vec<bool>,
     /// Parts that depend on parameters alone, in the order in which they were found, and their slots.
-    pub hoisted: Vec<(ExprId, Slot)>,
-    hoisted_index: FxHashMap<ExprId, Slot>,
+    pub hoisted: Vec<(ExprId, ValueSlot)>,
+    hoisted_index: FxHashMap<ExprId, ValueSlot>,
     /// Shapes made by the rules of events and observers: the expression and where its inputs begin and how many.
     shapes: FxHashMap<(ExprId, bool), (ExprId, u32, u32)>,
-    shape_inputs: Vec<Slot>,
+    shape_inputs: Vec<ValueSlot>,
     has_homotopy: bool,
     memo: Vec<(u32, ExprId)>,
     numbered: Vec<(u32, u32)>,
@@ -123,21 +123,21 @@ pub struct Shaper<'a> {
     stack: Vec<ExprId>,
 }
 
-impl<'a> Shaper<'a> {
+impl<'a> KernelShaper<'a> {
     /// A maker of shapes for this model.
-    pub fn new(dae: &'a Dae, layout: Layout) -> Self {
+    pub fn new(dae: &'a Dae, layout: ValueLayout) -> Self {
         let source = &dae.exprs;
         let mut pool = Exprs::default();
         pool.functions.clone_from(&source.functions);
-        Shaper {
+        KernelShaper {
             source,
-            kernels: Kernels { pool, ..Kernels::default() },
+            kernels: KernelTable { pool, ..KernelTable::default() },
             fixed: fixed_nodes(source, &fixed_parameters(dae)),
             hoisted: Vec::new(),
             hoisted_index: FxHashMap::default(),
             shapes: FxHashMap::default(),
             shape_inputs: Vec::new(),
-            has_homotopy: (0..source.len()).any(|id| matches!(source.node(ExprId(slot(id))), Node::Homotopy(..))),
+            has_homotopy: (0..source.len()).any(|id| matches!(source.node(ExprId(slot(id))), ExprNode::Homotopy(..))),
             memo: vec![(0, Exprs::ZERO); source.len()],
             numbered: vec![(0, 0); layout.len()],
             layout,
@@ -147,22 +147,22 @@ impl<'a> Shaper<'a> {
     }
 
     /// The shape of an expression of the model.
-    pub fn shape(&mut self, e: ExprId, rules: &Rules) -> Shaped {
+    pub fn shape(&mut self, e: ExprId, rules: &ShapingRules) -> KernelExpression {
         let key = (e, rules.initial && self.has_homotopy);
         let plain = rules.hoist && rules.inline.is_empty();
         if plain && let Some(&(expr, start, len)) = self.shapes.get(&key) {
-            return Shaped { expr, inputs: self.shape_inputs[start as usize..][..len as usize].to_vec() };
+            return KernelExpression { expr, inputs: self.shape_inputs[start as usize..][..len as usize].to_vec() };
         }
         let (exprs, inputs) = self.shape_all(&[e], rules);
         if plain {
             self.shapes.insert(key, (exprs[0], slot(self.shape_inputs.len()), slot(inputs.len())));
             self.shape_inputs.extend_from_slice(&inputs);
         }
-        Shaped { expr: exprs[0], inputs }
+        KernelExpression { expr: exprs[0], inputs }
     }
 
     /// The shapes of some expressions over the same inputs.
-    pub fn shape_all(&mut self, roots: &[ExprId], rules: &Rules) -> (Vec<ExprId>, Vec<Slot>) {
+    pub fn shape_all(&mut self, roots: &[ExprId], rules: &ShapingRules) -> (Vec<ExprId>, Vec<ValueSlot>) {
         self.stamp += 1;
         let mut inputs = Vec::new();
         self.stack.extend(roots.iter().rev());
@@ -181,15 +181,15 @@ impl<'a> Shaper<'a> {
     }
 
     /// Copies a node whose arguments are copied; else puts those on the stack that are not and says false.
-    fn finish(&mut self, e: ExprId, rules: &Rules, inputs: &mut Vec<Slot>) -> bool {
+    fn finish(&mut self, e: ExprId, rules: &ShapingRules, inputs: &mut Vec<ValueSlot>) -> bool {
         let copy = match self.turn(e, rules) {
-            Turn::Leaf(slot) => Some(self.input(slot, inputs)),
-            Turn::Number(value) => Some(self.kernels.pool.num(value)),
-            Turn::Other(other) => self.wanted(&[other]).then(|| self.known(other).expect("just seen")),
-            Turn::Homotopy(actual, simplified) => {
+            ShapeNode::Leaf(slot) => Some(self.input(slot, inputs)),
+            ShapeNode::Number(value) => Some(self.kernels.pool.num(value)),
+            ShapeNode::Other(other) => self.wanted(&[other]).then(|| self.known(other).expect("just seen")),
+            ShapeNode::Homotopy(actual, simplified) => {
                 self.wanted(&[actual, simplified]).then(|| self.homotopy(actual, simplified, inputs))
             }
-            Turn::Operation => {
+            ShapeNode::Operation => {
                 let source = self.source;
                 self.wanted(source.operands(e).as_slice()).then(|| self.copy(e))
             }
@@ -200,26 +200,26 @@ impl<'a> Shaper<'a> {
         copy.is_some()
     }
 
-    fn turn(&mut self, e: ExprId, rules: &Rules) -> Turn {
+    fn turn(&mut self, e: ExprId, rules: &ShapingRules) -> ShapeNode {
         let node = self.source.node(e);
         match node {
-            Node::Num(bits) => Turn::Number(f64::from_bits(bits)),
-            Node::Sample(..) => Turn::Number(0.0),
-            Node::Homotopy(actual, simplified) if rules.initial => Turn::Homotopy(actual, simplified),
-            Node::Homotopy(actual, _) => Turn::Other(actual),
+            ExprNode::Num(bits) => ShapeNode::Number(f64::from_bits(bits)),
+            ExprNode::Sample(..) => ShapeNode::Number(0.0),
+            ExprNode::Homotopy(actual, simplified) if rules.initial => ShapeNode::Homotopy(actual, simplified),
+            ExprNode::Homotopy(actual, _) => ShapeNode::Other(actual),
             _ => match self.layout.leaf(node) {
-                Some(slot) => rules.inline.get(&slot).map_or(Turn::Leaf(slot), |&value| Turn::Other(value)),
-                None if rules.hoist && self.fixed[e.index()] => Turn::Leaf(self.hoisted_slot(e)),
-                None => Turn::Operation,
+                Some(slot) => rules.inline.get(&slot).map_or(ShapeNode::Leaf(slot), |&value| ShapeNode::Other(value)),
+                None if rules.hoist && self.fixed[e.index()] => ShapeNode::Leaf(self.hoisted_slot(e)),
+                None => ShapeNode::Operation,
             },
         }
     }
 
     /// The definitions of all parts that depend on parameters alone.
-    pub fn hoisted_definitions(&mut self) -> Defs {
+    pub fn hoisted_definitions(&mut self) -> KernelDefinitions {
         let inline = FxHashMap::default();
-        let rules = Rules { initial: false, inline: &inline, hoist: false };
-        let mut defs = Defs::default();
+        let rules = ShapingRules { initial: false, inline: &inline, hoist: false };
+        let mut defs = KernelDefinitions::default();
         for (e, target) in self.hoisted.clone() {
             let shaped = self.shape(e, &rules);
             defs.define(&mut self.kernels, target, &shaped);
@@ -228,7 +228,7 @@ impl<'a> Shaper<'a> {
     }
 
     /// The slot of a part that depends on parameters alone.
-    fn hoisted_slot(&mut self, e: ExprId) -> Slot {
+    fn hoisted_slot(&mut self, e: ExprId) -> ValueSlot {
         if let Some(&known) = self.hoisted_index.get(&e) {
             return known;
         }
@@ -249,7 +249,7 @@ impl<'a> Shaper<'a> {
         self.stack.len() == before
     }
 
-    fn input(&mut self, slot: Slot, inputs: &mut Vec<Slot>) -> ExprId {
+    fn input(&mut self, slot: ValueSlot, inputs: &mut Vec<ValueSlot>) -> ExprId {
         if self.numbered.len() <= slot as usize {
             self.numbered.resize(self.layout.len(), (0, 0));
         }
@@ -263,11 +263,11 @@ impl<'a> Shaper<'a> {
     }
 
     /// `lambda*actual + (1 - lambda)*simplified`, exactly `actual` at the end.
-    fn homotopy(&mut self, actual: ExprId, simplified: ExprId, inputs: &mut Vec<Slot>) -> ExprId {
-        let lambda = self.input(slot(Layout::LAMBDA), inputs);
+    fn homotopy(&mut self, actual: ExprId, simplified: ExprId, inputs: &mut Vec<ValueSlot>) -> ExprId {
+        let lambda = self.input(slot(ValueLayout::LAMBDA), inputs);
         let (a, s) = (self.known(actual).expect("copied"), self.known(simplified).expect("copied"));
         let pool = &mut self.kernels.pool;
-        let arrived = pool.rel(Rel::Eq, lambda, Exprs::ONE);
+        let arrived = pool.rel(RelationalOp::Eq, lambda, Exprs::ONE);
         let rest = pool.sub(Exprs::ONE, lambda);
         let (left, right) = (pool.mul(lambda, a), pool.mul(rest, s));
         let mix = pool.add(left, right);
@@ -286,13 +286,13 @@ impl<'a> Shaper<'a> {
 /// The node `e` of `from` in the pool `to`, over arguments that are already there.
 pub fn copy_node(from: &Exprs, e: ExprId, to: &mut Exprs, of: impl Fn(ExprId) -> ExprId) -> ExprId {
     match from.node(e) {
-        Node::Num(bits) => to.num(f64::from_bits(bits)),
-        Node::Unary(op, a) => to.unary(op, of(a)),
-        Node::Binary(op, a, b) => to.binary(op, of(a), of(b)),
-        Node::Rel(rel, a, b) | Node::EventRel(rel, a, b) => to.rel(rel, of(a), of(b)),
-        Node::EventFloor(a) => to.unary(Unary::Floor, of(a)),
-        Node::If(c, a, b) => to.if_(of(c), of(a), of(b)),
-        Node::Call(function, output, args) => {
+        ExprNode::Num(bits) => to.num(f64::from_bits(bits)),
+        ExprNode::Unary(op, a) => to.unary(op, of(a)),
+        ExprNode::Binary(op, a, b) => to.binary(op, of(a), of(b)),
+        ExprNode::Rel(rel, a, b) | ExprNode::EventRel(rel, a, b) => to.rel(rel, of(a), of(b)),
+        ExprNode::EventFloor(a) => to.unary(UnaryFunction::Floor, of(a)),
+        ExprNode::If(c, a, b) => to.if_(of(c), of(a), of(b)),
+        ExprNode::Call(function, output, args) => {
             let args: Vec<ExprId> = from.args(args).iter().map(|&arg| of(arg)).collect();
             to.call(function, output, &args)
         }
@@ -324,10 +324,10 @@ fn fixed_nodes(pool: &Exprs, parameters: &[bool]) -> Vec<bool> {
     for id in 0..pool.len() {
         let e = ExprId(slot(id));
         let own = match pool.node(e) {
-            Node::Num(_) => true,
-            Node::Var(v) => parameters.get(v.index()).copied().unwrap_or(false),
-            Node::Time | Node::Der(_) | Node::Pre(_) | Node::Sample(..) => false,
-            Node::Initial | Node::Terminal | Node::Homotopy(..) => false,
+            ExprNode::Num(_) => true,
+            ExprNode::Var(v) => parameters.get(v.index()).copied().unwrap_or(false),
+            ExprNode::Time | ExprNode::Der(_) | ExprNode::Pre(_) | ExprNode::Sample(..) => false,
+            ExprNode::Initial | ExprNode::Terminal | ExprNode::Homotopy(..) => false,
             _ => true,
         };
         fixed.push(own && pool.operands(e).as_slice().iter().all(|operand| fixed[operand.index()]));

@@ -3,72 +3,75 @@
 use super::blocks;
 use super::continuous::Observables;
 use super::follow;
-use super::layout::Slot;
-use super::native::Entry;
-use super::parameters::Bindings;
-use super::program::{Assembler, CompiledLoops, Order, late_scratch};
-use super::shape::Kernels;
-use super::trap::{self, Trap};
-use super::{BlockCode, Column, Conditions, Integral, Layout, NonFinite, Pattern, Program, Row, RowKind};
+use super::layout::ValueSlot;
+use super::native::NativeEntry;
+use super::parameters::BindingEvaluator;
+use super::program::{CompiledLoops, DefinitionOrder, ProgramAssembler, late_scratch};
+use super::shape::KernelTable;
+use super::trap::{self, NonFiniteTrap};
+use super::{
+    BlockCode, ConditionProgram, ConservedIntegral, NonFinite, Program, ResidualRow, ResidualRowKind, SparsityPattern,
+    UnknownColumn, ValueLayout,
+};
 use bramah_expr::function::Function;
-use bramah_expr::{ExprId, Node, VarId};
+use bramah_expr::{ExprId, ExprNode, VarId};
 use bramah_model::structure::Dae;
 use std::sync::Arc;
 
 /// A model ready to run: immutable, `Send + Sync`, shared by parallel runs. Each run owns one array of values, made by
 /// `system.layout.values()`; every method below that takes `values` wants that array.
 #[derive(Clone, Debug)]
-pub struct System {
+pub struct ExecutableSystem {
     /// The model.
     pub dae: Arc<Dae>,
     /// Where values live.
-    pub layout: Layout,
+    pub layout: ValueLayout,
     /// The unknowns of the IDA system: states in the order of the DAE, then algebraic unknowns.
-    pub columns: Vec<Column>,
+    pub columns: Vec<UnknownColumn>,
     /// The rows of the IDA system, as many as columns.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ResidualRow>,
     /// Structure of dF/dy + cj dF/dyp. Every diagonal entry is present where the row was made for the column.
-    pub pattern: Pattern,
+    pub pattern: SparsityPattern,
     /// The entries of `Dae::crossings` that need a root function (relations and floors, not times), in order.
     pub root_crossings: Vec<usize>,
     /// The conserved quantities among the unknowns.
-    pub integrals: Vec<Integral>,
+    pub integrals: Vec<ConservedIntegral>,
     /// The system at events: given states, inputs and `pre` values, computes everything else.
     pub event: Vec<BlockCode>,
     /// The system at the start: computes states, derivatives and everything else.
     pub initial: Vec<BlockCode>,
     /// `Dae::actions`: what fires, and the values of `reinit` and `assert`. Run after the event blocks.
-    pub actions: Conditions,
-    /// `Dae::asserts`, with all explicit variables they need: run after [`System::load`].
-    pub asserts: Conditions,
+    pub actions: ConditionProgram,
+    /// `Dae::asserts`, with all explicit variables they need: run after [`ExecutableSystem::load`].
+    pub asserts: ConditionProgram,
     /// The entries of `Dae::asserts` about parameters alone.
     pub standing_asserts: Vec<usize>,
-    pub(super) programs: Programs,
+    pub(super) programs: SystemPrograms,
 }
 
-/// What the methods of [`System`] run.
+/// What the methods of [`ExecutableSystem`] run.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Programs {
-    pub kernels: Arc<Kernels>,
+pub(super) struct SystemPrograms {
+    pub kernels: Arc<KernelTable>,
     pub functions: Arc<Vec<Function>>,
-    pub bindings: Bindings,
+    pub bindings: BindingEvaluator,
     /// Parameters that depend on ones found by the initial system.
     pub late: Vec<bool>,
     pub hoisted: Program,
     pub residual: Program,
     pub jacobian: Program,
     /// Per matrix entry, the slots of what is added and subtracted.
-    pub entries: Vec<(Slot, Slot)>,
+    pub entries: Vec<(ValueSlot, ValueSlot)>,
     /// Per column, the slot of its variable.
-    pub column_slots: Vec<Slot>,
+    pub column_slots: Vec<ValueSlot>,
     /// Per row, the slot of its right side.
-    pub row_slots: Vec<Slot>,
+    pub row_slots: Vec<ValueSlot>,
     /// Columns whose derivative is read from yp, and its slot.
-    pub torn: Vec<(usize, Slot)>,
+    pub torn: Vec<(usize, ValueSlot)>,
     /// Root functions with the explicit variables they need, and without.
     pub crossings: Program,
     pub crossings_alone: Program,
-    pub crossing_slots: Vec<Slot>,
+    pub crossing_slots: Vec<ValueSlot>,
     /// Conserved quantities and their rates, from all variables.
     pub quantities: Program,
     /// Each quantity alone, with the explicit variables it needs.
@@ -79,12 +82,12 @@ pub(super) struct Programs {
     pub observables: Observables,
     pub observe: Program,
     /// Alias, target, negated.
-    pub aliases: Vec<(Slot, Slot, bool)>,
+    pub aliases: Vec<(ValueSlot, ValueSlot, bool)>,
     /// Where the scratch region begins.
-    pub scratch: Slot,
+    pub scratch: ValueSlot,
 }
 
-impl System {
+impl ExecutableSystem {
     /// Computes parameters from their bindings (entries of `overridden`, by `VarId::index`, keep the value they have in
     /// `values`; an empty slice overrides nothing), and then everything that depends on parameters alone.
     /// To be called again whenever a parameter's value has been changed.
@@ -128,7 +131,7 @@ impl System {
 
     /// Puts time and the IDA unknowns into their slots.
     pub fn load(&self, t: f64, y: &[f64], yp: &[f64], values: &mut [f64]) {
-        values[Layout::TIME] = t;
+        values[ValueLayout::TIME] = t;
         for (&slot, &y) in self.programs.column_slots.iter().zip(y) {
             values[slot as usize] = y;
         }
@@ -154,7 +157,7 @@ impl System {
     /// The value of a state that has the quantity in `y`, all else as it is.
     fn following(
         &self,
-        integral: &Integral,
+        integral: &ConservedIntegral,
         program: &Program,
         y: &[f64],
         values: &mut [f64],
@@ -181,23 +184,23 @@ impl System {
         for (i, (row, &place)) in self.rows.iter().zip(&self.programs.row_slots).enumerate() {
             let value = values[place as usize];
             r[i] = match row.kind {
-                RowKind::Derivative => yp[i] - value,
-                RowKind::Explicit => y[i] - value,
-                RowKind::Follows(quantity) => y[quantity] - value,
-                RowKind::Residual => value,
+                ResidualRowKind::Derivative => yp[i] - value,
+                ResidualRowKind::Explicit => y[i] - value,
+                ResidualRowKind::Follows(quantity) => y[quantity] - value,
+                ResidualRowKind::Residual => value,
             };
             finite &= r[i].is_finite();
         }
         if finite { Ok(()) } else { Err(NonFinite) }
     }
 
-    /// Whether [`System::rate_residual`] is one in which every unknown has a derivative of its own.
+    /// Whether [`ExecutableSystem::rate_residual`] is one in which every unknown has a derivative of its own.
     pub fn gives_rates(&self) -> bool {
         let torn = |column: usize| self.programs.torn.iter().any(|t| t.0 == column);
         self.rows.iter().enumerate().all(|(i, row)| match row.kind {
-            RowKind::Derivative => true,
-            RowKind::Follows(_) => !torn(i),
-            RowKind::Explicit | RowKind::Residual => false,
+            ResidualRowKind::Derivative => true,
+            ResidualRowKind::Follows(_) => !torn(i),
+            ResidualRowKind::Explicit | ResidualRowKind::Residual => false,
         })
     }
 
@@ -241,7 +244,7 @@ impl System {
         val: &mut [f64],
     ) -> Result<(), NonFinite> {
         self.load(t, y, yp, values);
-        values[Layout::CJ] = cj;
+        values[ValueLayout::CJ] = cj;
         self.programs.jacobian.run(values);
         let mut finite = true;
         for (entry, &(plus, minus)) in val.iter_mut().zip(&self.programs.entries) {
@@ -285,13 +288,13 @@ impl System {
         self.programs.observe.run(values);
     }
 
-    /// A program that fills the slots of these variables, to be run after [`System::load`].
+    /// A program that fills the slots of these variables, to be run after [`ExecutableSystem::load`].
     pub fn observe_only(&self, wanted: &[VarId]) -> Program {
         let p = &self.programs;
-        let slots = wanted.iter().filter_map(|&v| self.layout.leaf(Node::Var(v)));
+        let slots = wanted.iter().filter_map(|&v| self.layout.leaf(ExprNode::Var(v)));
         let defs = p.observables.needed(&p.kernels, slots);
-        let mut assembler = Assembler::with_loops(&p.kernels, &self.layout, p.native, &p.loops);
-        let mut program = assembler.assemble(&defs, Order::Dependency, None);
+        let mut assembler = ProgramAssembler::with_loops(&p.kernels, &self.layout, p.native, &p.loops);
+        let mut program = assembler.assemble(&defs, DefinitionOrder::Dependency, None);
         let room = self.layout.len() - p.scratch as usize;
         assert!(program.scratch() as usize <= room, "`late_scratch` is an upper bound");
         program.finish(p.scratch, p.scratch as usize + program.scratch() as usize, &p.functions, &[]);
@@ -317,7 +320,7 @@ impl System {
     }
 
     /// Last touch to all programs: where the scratch region begins and what has been compiled.
-    pub(super) fn finish(&mut self, entries: &[Entry]) {
+    pub(super) fn finish(&mut self, entries: &[NativeEntry]) {
         let mut scratch = self.programs.bindings.scratch();
         self.each_program(&mut |program| scratch = scratch.max(program.scratch()));
         let late = late_scratch(&self.programs.observables.defs, &self.programs.kernels);
@@ -349,12 +352,12 @@ impl System {
     }
 
     /// The value of a leaf.
-    pub(super) fn leaf(&self, node: Node, values: &[f64]) -> f64 {
+    pub(super) fn leaf(&self, node: ExprNode, values: &[f64]) -> f64 {
         self.layout.leaf(node).map_or(0.0, |slot| values[slot as usize])
     }
 
     /// The first operation in `e` that makes a value that is not finite, in the order of evaluation.
-    pub fn trap(&self, e: ExprId, values: &[f64]) -> Option<Trap> {
+    pub fn trap(&self, e: ExprId, values: &[f64]) -> Option<NonFiniteTrap> {
         trap::find(self, e, values)
     }
 }

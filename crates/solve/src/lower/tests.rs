@@ -2,13 +2,15 @@
 
 use super::*;
 use approx::assert_relative_eq;
-use bramah_expr::{Exprs, Rel, Unary};
-use bramah_model::flat::{self, Origin, OriginKind, Type, Variability};
-use bramah_model::structure::{Alias, Assign, Block, Crossing, CrossingKind, Loop, Mixed};
+use bramah_expr::{Exprs, RelationalOp, UnaryFunction};
+use bramah_model::flat::{self, ElementOrigin, OriginKind, ScalarType, Variability};
+use bramah_model::structure::{
+    AlgebraicLoop, Alias, BltBlock, CrossingKind, ExplicitAssignment, MixedLoop, ZeroCrossing,
+};
 use bramah_syntax::diag::{FileId, Span};
 
-pub const ORIGIN: Origin =
-    Origin { span: Span { file: FileId(0), start: 0, end: 0 }, instance: 0, kind: OriginKind::Declared };
+pub const ORIGIN: ElementOrigin =
+    ElementOrigin { span: Span { file: FileId(0), start: 0, end: 0 }, instance: 0, kind: OriginKind::Declared };
 
 /// A DAE under construction.
 #[derive(Default)]
@@ -19,7 +21,7 @@ pub struct Model {
 impl Model {
     pub fn variable(&mut self, name: &str, variability: Variability) -> VarId {
         let v = VarId(u32::try_from(self.dae.variables.len()).unwrap());
-        self.dae.variables.push(flat::Variable::plain(name, Type::Real, variability, ORIGIN));
+        self.dae.variables.push(flat::FlatVariable::plain(name, ScalarType::Real, variability, ORIGIN));
         v
     }
 
@@ -45,19 +47,19 @@ impl Model {
         self.dae.exprs.num(value)
     }
 
-    pub fn assign(&mut self, unknown: Unknown, value: ExprId) -> Assign {
-        Assign { unknown, value, equation: 0 }
+    pub fn assign(&mut self, unknown: Unknown, value: ExprId) -> ExplicitAssignment {
+        ExplicitAssignment { unknown, value, equation: 0 }
     }
 
     /// An explicit equation of the continuous and the event system.
     pub fn explicit(&mut self, unknown: Unknown, value: ExprId) {
-        let block = Block::Assign(self.assign(unknown, value));
+        let block = BltBlock::Assign(self.assign(unknown, value));
         self.dae.continuous.push(block.clone());
         self.dae.event.push(block);
     }
 
-    pub fn lower(self, native: bool) -> System {
-        let mut system = lower(Arc::new(self.dae), &Options { native, ..Options::default() });
+    pub fn lower(self, native: bool) -> ExecutableSystem {
+        let mut system = lower(Arc::new(self.dae), &LoweringOptions { native, ..LoweringOptions::default() });
         system.hurry();
         system
     }
@@ -71,7 +73,7 @@ pub struct Point {
 }
 
 /// Residual and Jacobian at `(t, y, yp)`.
-pub fn point(system: &System, values: &mut [f64], y: &[f64], yp: &[f64], cj: f64) -> Point {
+pub fn point(system: &ExecutableSystem, values: &mut [f64], y: &[f64], yp: &[f64], cj: f64) -> Point {
     let mut residual = vec![0.0; y.len()];
     let mut jacobian = vec![0.0; system.pattern.nnz()];
     let _ = system.residual(0.3, y, yp, values, &mut residual);
@@ -80,7 +82,7 @@ pub fn point(system: &System, values: &mut [f64], y: &[f64], yp: &[f64], cj: f64
 }
 
 /// Compares the Jacobian with central differences of the residual.
-pub fn check_jacobian(system: &System, values: &mut [f64], y: &[f64], yp: &[f64], cj: f64) {
+pub fn check_jacobian(system: &ExecutableSystem, values: &mut [f64], y: &[f64], yp: &[f64], cj: f64) {
     let n = y.len();
     let exact = point(system, values, y, yp, cj).jacobian;
     let mut dense = vec![vec![0.0; n]; n];
@@ -105,7 +107,7 @@ pub fn check_jacobian(system: &System, values: &mut [f64], y: &[f64], yp: &[f64]
     }
 }
 
-pub fn values_of(system: &System) -> Vec<f64> {
+pub fn values_of(system: &ExecutableSystem) -> Vec<f64> {
     let mut values = system.layout.values();
     system.evaluate_parameters(&mut values, &[]);
     values
@@ -166,7 +168,7 @@ fn a_line_is_a_few_loops_and_its_jacobian_is_tridiagonal() {
     assert_eq!(bits(&a.jacobian), bits(&b.jacobian));
     small.observe(0.3, &y, &yp, &mut values);
     for assign in small.dae.continuous.iter() {
-        let Block::Assign(assign) = assign else { panic!("only assignments") };
+        let BltBlock::Assign(assign) = assign else { panic!("only assignments") };
         let expected = small.eval(assign.value, &values);
         assert_relative_eq!(values[small.layout.unknown(assign.unknown)], expected, max_relative = 1e-13);
     }
@@ -239,10 +241,15 @@ fn looped() -> Model {
     let sum = e.add(ez, cube);
     let residual = e.sub(sum, ex);
     let rate = e.neg(ez);
-    let inner = Assign { unknown: Unknown::Var(w), value: square, equation: 0 };
-    let l = Loop { tearing: vec![Unknown::Var(z)], inner: vec![inner], residuals: vec![(residual, 0)], linear: false };
-    m.dae.continuous.push(Block::Loop(l.clone()));
-    m.dae.event.push(Block::Loop(l));
+    let inner = ExplicitAssignment { unknown: Unknown::Var(w), value: square, equation: 0 };
+    let l = AlgebraicLoop {
+        tearing: vec![Unknown::Var(z)],
+        inner: vec![inner],
+        residuals: vec![(residual, 0)],
+        linear: false,
+    };
+    m.dae.continuous.push(BltBlock::Loop(l.clone()));
+    m.dae.event.push(BltBlock::Loop(l));
     m.explicit(Unknown::Der(x), rate);
     m
 }
@@ -253,7 +260,7 @@ fn tearing_variables_are_columns() {
         let system = looped().lower(native);
         assert_eq!(system.columns.len(), 2);
         assert!(!system.columns[1].is_state());
-        assert_eq!(system.rows[1].kind, RowKind::Residual);
+        assert_eq!(system.rows[1].kind, ResidualRowKind::Residual);
         let mut values = values_of(&system);
         let p = point(&system, &mut values, &[10.0, 2.0], &[-2.0, 0.0], 3.0);
         assert_eq!(p.residual, [0.0, 0.0]);
@@ -287,9 +294,14 @@ fn a_torn_derivative_is_yp() {
     let damped = e.mul(three, a);
     let force = e.sub(ev, damped);
     let residual = e.sub(a, ef);
-    let inner = Assign { unknown: Unknown::Var(f), value: force, equation: 0 };
-    let l = Loop { tearing: vec![Unknown::Der(v)], inner: vec![inner], residuals: vec![(residual, 0)], linear: true };
-    m.dae.continuous.push(Block::Loop(l));
+    let inner = ExplicitAssignment { unknown: Unknown::Var(f), value: force, equation: 0 };
+    let l = AlgebraicLoop {
+        tearing: vec![Unknown::Der(v)],
+        inner: vec![inner],
+        residuals: vec![(residual, 0)],
+        linear: true,
+    };
+    m.dae.continuous.push(BltBlock::Loop(l));
     let system = m.lower(true);
     let mut values = values_of(&system);
     assert_eq!(system.columns.len(), 1);
@@ -315,7 +327,7 @@ fn large_systems_keep_what_would_fill_the_matrix() {
     }
     let system = m.lower(true);
     assert_eq!(system.columns.len(), 101);
-    assert_eq!(system.rows[100].kind, RowKind::Explicit);
+    assert_eq!(system.rows[100].kind, ResidualRowKind::Explicit);
     assert_eq!(system.pattern.nnz(), 100 + 100 + 101);
     let mut values = values_of(&system);
     let y: Vec<f64> = (0..101).map(f64::from).collect();
@@ -327,8 +339,8 @@ fn branches_are_lazy_and_traps_are_found() {
     let mut m = Model::default();
     let (x, ex) = m.state("x");
     let e = &mut m.dae.exprs;
-    let positive = e.rel(Rel::Gt, ex, Exprs::ZERO);
-    let log = e.unary(Unary::Log, ex);
+    let positive = e.rel(RelationalOp::Gt, ex, Exprs::ZERO);
+    let log = e.unary(UnaryFunction::Log, ex);
     let root = e.sqrt(log);
     let rate = e.if_(positive, root, ex);
     m.explicit(Unknown::Der(x), rate);
@@ -354,15 +366,19 @@ fn crossings_are_differences_and_modes_stand_alone() {
     let on = m.dae.exprs.var(mode);
     let e = &mut m.dae.exprs;
     let double = e.add(ex, ex);
-    let above = e.rel(Rel::Gt, ew, Exprs::ONE);
+    let above = e.rel(RelationalOp::Gt, ew, Exprs::ONE);
     let rate = e.if_(on, ew, Exprs::ONE);
-    m.dae.crossings.push(Crossing { mode, kind: CrossingKind::Relation(Rel::Gt, ew, Exprs::ONE), origin: ORIGIN });
+    m.dae.crossings.push(ZeroCrossing {
+        mode,
+        kind: CrossingKind::Relation(RelationalOp::Gt, ew, Exprs::ONE),
+        origin: ORIGIN,
+    });
     m.explicit(Unknown::Var(w), double);
     let switch = m.assign(Unknown::Var(mode), above);
-    m.dae.event.push(Block::Assign(switch));
+    m.dae.event.push(BltBlock::Assign(switch));
     m.explicit(Unknown::Der(x), rate);
-    let mixed = Mixed { continuous: vec![], discrete: vec![switch] };
-    m.dae.event.push(Block::Mixed(mixed));
+    let mixed = MixedLoop { continuous: vec![], discrete: vec![switch] };
+    m.dae.event.push(BltBlock::Mixed(mixed));
     let other = m.variable("alias", Variability::Continuous);
     m.dae.aliases.push(Alias { variable: other, target: w, negated: true });
     let system = m.lower(true);
@@ -388,13 +404,13 @@ fn homotopy_mixes_in_the_initial_system_only() {
     let (z, _) = m.continuous("z");
     let (two, ten) = (m.number(2.0), m.number(10.0));
     let value = m.dae.exprs.homotopy(two, ten);
-    let block = Block::Assign(m.assign(Unknown::Var(z), value));
+    let block = BltBlock::Assign(m.assign(Unknown::Var(z), value));
     m.dae.initial.push(block.clone());
     m.dae.event.push(block);
     let system = m.lower(false);
     let mut values = values_of(&system);
     let run = |blocks: &[BlockCode], lambda: f64, values: &mut [f64]| {
-        values[Layout::LAMBDA] = lambda;
+        values[ValueLayout::LAMBDA] = lambda;
         let BlockCode::Assign(run) = &blocks[0] else { panic!("an assignment") };
         run.program.run(values);
         values[system.layout.var(z)]

@@ -1,10 +1,10 @@
 //! From the steps of a kernel to Cranelift's instructions.
 
-use super::code::{Branch, Code, Operand, Step};
-use super::layout::Slot;
+use super::code::{CodeBranch, CodeStep, KernelCode, RegisterOperand};
+use super::layout::ValueSlot;
 use super::native::CALL_FUNCTION;
 use bramah_expr::function::Function;
-use bramah_expr::{Binary, Rel, Unary};
+use bramah_expr::{BinaryFunction, RelationalOp, UnaryFunction};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::immediates::Offset32;
 use cranelift_codegen::ir::types::{F64, I8, I32};
@@ -17,7 +17,7 @@ use cranelift_module::{FuncId, Module};
 use rustc_hash::FxHashMap;
 
 /// Turns steps into instructions of one function.
-pub struct Translator<'a> {
+pub struct NativeTranslator<'a> {
     /// Holds the function that is being written.
     pub builder: FunctionBuilder<'a>,
     module: &'a mut JITModule,
@@ -33,7 +33,7 @@ pub struct Translator<'a> {
     depth: u32,
 }
 
-impl<'a> Translator<'a> {
+impl<'a> NativeTranslator<'a> {
     /// Starts a function of four pointer-sized arguments: values, table, number of rows, functions.
     pub fn new(
         mut builder: FunctionBuilder<'a>,
@@ -48,7 +48,7 @@ impl<'a> Translator<'a> {
         builder.seal_block(block);
         let p = builder.block_params(block);
         let arguments = [p[0], p[1], p[2], p[3]];
-        Translator {
+        NativeTranslator {
             builder,
             module,
             imports,
@@ -64,7 +64,7 @@ impl<'a> Translator<'a> {
     }
 
     /// Code whose inputs are slots and whose outputs go to `targets`.
-    pub fn straight(&mut self, code: &Code, targets: &[Slot]) {
+    pub fn straight(&mut self, code: &KernelCode, targets: &[ValueSlot]) {
         self.body(code);
         let outputs: Vec<Value> = code.outputs.iter().map(|&output| self.value(output)).collect();
         for (&value, &target) in outputs.iter().zip(targets) {
@@ -75,7 +75,7 @@ impl<'a> Translator<'a> {
     }
 
     /// `for row in table { load inputs; compute; store outputs }`
-    pub fn looped(&mut self, code: &Code, inputs: u32) {
+    pub fn looped(&mut self, code: &KernelCode, inputs: u32) {
         let [_, table, rows, _] = self.arguments;
         let width = 4 * i64::from(inputs) + 4 * i64::try_from(code.outputs.len()).expect("a small number");
         let bytes = self.builder.ins().imul_imm_s(rows, width);
@@ -98,7 +98,7 @@ impl<'a> Translator<'a> {
         self.builder.ins().return_(&[]);
     }
 
-    fn row(&mut self, code: &Code, inputs: u32, row: Value) {
+    fn row(&mut self, code: &KernelCode, inputs: u32, row: Value) {
         for input in 0..inputs {
             let address = self.address(row, input);
             let value = self.builder.ins().load(F64, MemFlagsData::trusted(), address, 0);
@@ -120,43 +120,43 @@ impl<'a> Translator<'a> {
         self.builder.ins().iadd(self.arguments[0], bytes)
     }
 
-    fn body(&mut self, code: &Code) {
+    fn body(&mut self, code: &KernelCode) {
         let nothing = Value::from_u32(0);
         self.registers = vec![nothing; code.registers as usize];
         self.steps(&code.steps);
     }
 
-    fn steps(&mut self, steps: &[Step]) {
+    fn steps(&mut self, steps: &[CodeStep]) {
         for step in steps {
             self.step(step);
         }
     }
 
-    fn step(&mut self, step: &Step) {
+    fn step(&mut self, step: &CodeStep) {
         match step {
-            &Step::Unary(op, dst, a) => self.registers[dst as usize] = self.unary(op, dst, a),
-            &Step::Binary(op, dst, a, b) => self.registers[dst as usize] = self.binary(op, dst, a, b),
-            &Step::Rel(rel, dst, a, b) => {
+            &CodeStep::Unary(op, dst, a) => self.registers[dst as usize] = self.unary(op, dst, a),
+            &CodeStep::Binary(op, dst, a, b) => self.registers[dst as usize] = self.binary(op, dst, a, b),
+            &CodeStep::Rel(rel, dst, a, b) => {
                 let (a, b) = (self.value(a), self.value(b));
                 let truth = self.builder.ins().fcmp(relation(rel), a, b);
                 self.registers[dst as usize] = self.as_number(dst, truth);
             }
-            &Step::Select { dst, c, a, b } => {
+            &CodeStep::Select { dst, c, a, b } => {
                 let (c, a, b) = (self.truth(c), self.value(a), self.value(b));
                 self.registers[dst as usize] = self.builder.ins().select(c, a, b);
             }
-            Step::Branch { dst, c, then, otherwise } => {
+            CodeStep::Branch { dst, c, then, otherwise } => {
                 self.registers[*dst as usize] = self.branch(*c, then, otherwise);
             }
-            Step::Call { function, args, outputs } => self.call(function.0, args, outputs),
+            CodeStep::Call { function, args, outputs } => self.call(function.0, args, outputs),
         }
     }
 
-    fn value(&mut self, operand: Operand) -> Value {
+    fn value(&mut self, operand: RegisterOperand) -> Value {
         match operand {
-            Operand::Register(r) => self.registers[r as usize],
-            Operand::Number(bits) => self.builder.ins().f64const(f64::from_bits(bits)),
-            Operand::Input(input) => match self.inputs.get(&input) {
+            RegisterOperand::Register(r) => self.registers[r as usize],
+            RegisterOperand::Number(bits) => self.builder.ins().f64const(f64::from_bits(bits)),
+            RegisterOperand::Input(input) => match self.inputs.get(&input) {
                 Some(&known) => known,
                 None => self.load(input),
             },
@@ -174,8 +174,8 @@ impl<'a> Translator<'a> {
     }
 
     /// Whether a value is not 0.
-    fn truth(&mut self, operand: Operand) -> Value {
-        if let Operand::Register(r) = operand
+    fn truth(&mut self, operand: RegisterOperand) -> Value {
+        if let RegisterOperand::Register(r) = operand
             && let Some(&known) = self.truths.get(&r)
         {
             return known;
@@ -190,35 +190,35 @@ impl<'a> Translator<'a> {
         self.builder.ins().select(truth, one, zero)
     }
 
-    fn unary(&mut self, op: Unary, dst: u32, a: Operand) -> Value {
+    fn unary(&mut self, op: UnaryFunction, dst: u32, a: RegisterOperand) -> Value {
         let name = match op {
-            Unary::Not => return self.not(dst, a),
-            Unary::Neg | Unary::Abs | Unary::Sqrt | Unary::Sign => "",
-            Unary::Exp => "exp",
-            Unary::Log => "log",
-            Unary::Log10 => "log10",
-            Unary::Sin => "sin",
-            Unary::Cos => "cos",
-            Unary::Tan => "tan",
-            Unary::Asin => "asin",
-            Unary::Acos => "acos",
-            Unary::Atan => "atan",
-            Unary::Sinh => "sinh",
-            Unary::Cosh => "cosh",
-            Unary::Tanh => "tanh",
-            Unary::Floor => "floor",
+            UnaryFunction::Not => return self.not(dst, a),
+            UnaryFunction::Neg | UnaryFunction::Abs | UnaryFunction::Sqrt | UnaryFunction::Sign => "",
+            UnaryFunction::Exp => "exp",
+            UnaryFunction::Log => "log",
+            UnaryFunction::Log10 => "log10",
+            UnaryFunction::Sin => "sin",
+            UnaryFunction::Cos => "cos",
+            UnaryFunction::Tan => "tan",
+            UnaryFunction::Asin => "asin",
+            UnaryFunction::Acos => "acos",
+            UnaryFunction::Atan => "atan",
+            UnaryFunction::Sinh => "sinh",
+            UnaryFunction::Cosh => "cosh",
+            UnaryFunction::Tanh => "tanh",
+            UnaryFunction::Floor => "floor",
         };
         let a = self.value(a);
         match op {
-            Unary::Neg => self.builder.ins().fneg(a),
-            Unary::Abs => self.builder.ins().fabs(a),
-            Unary::Sqrt => self.builder.ins().sqrt(a),
-            Unary::Sign => self.sign(a),
+            UnaryFunction::Neg => self.builder.ins().fneg(a),
+            UnaryFunction::Abs => self.builder.ins().fabs(a),
+            UnaryFunction::Sqrt => self.builder.ins().sqrt(a),
+            UnaryFunction::Sign => self.sign(a),
             _ => self.import(name, &[a]),
         }
     }
 
-    fn not(&mut self, dst: u32, a: Operand) -> Value {
+    fn not(&mut self, dst: u32, a: RegisterOperand) -> Value {
         let truth = self.truth(a);
         let one = self.builder.ins().iconst(I8, 1);
         let turned = self.builder.ins().bxor(truth, one);
@@ -235,22 +235,22 @@ impl<'a> Translator<'a> {
         self.builder.ins().select(positive, one, lower)
     }
 
-    fn binary(&mut self, op: Binary, dst: u32, a: Operand, b: Operand) -> Value {
-        if let Binary::And | Binary::Or = op {
+    fn binary(&mut self, op: BinaryFunction, dst: u32, a: RegisterOperand, b: RegisterOperand) -> Value {
+        if let BinaryFunction::And | BinaryFunction::Or = op {
             let (a, b) = (self.truth(a), self.truth(b));
             let both = self.builder.ins();
-            let truth = if op == Binary::And { both.band(a, b) } else { both.bor(a, b) };
+            let truth = if op == BinaryFunction::And { both.band(a, b) } else { both.bor(a, b) };
             return self.as_number(dst, truth);
         }
         let (a, b) = (self.value(a), self.value(b));
         match op {
-            Binary::Add => self.builder.ins().fadd(a, b),
-            Binary::Sub => self.builder.ins().fsub(a, b),
-            Binary::Mul => self.builder.ins().fmul(a, b),
-            Binary::Div => self.builder.ins().fdiv(a, b),
-            Binary::Min => self.first_if(FloatCC::LessThanOrEqual, a, b),
-            Binary::Max => self.first_if(FloatCC::GreaterThanOrEqual, a, b),
-            Binary::Atan2 => self.import("atan2", &[a, b]),
+            BinaryFunction::Add => self.builder.ins().fadd(a, b),
+            BinaryFunction::Sub => self.builder.ins().fsub(a, b),
+            BinaryFunction::Mul => self.builder.ins().fmul(a, b),
+            BinaryFunction::Div => self.builder.ins().fdiv(a, b),
+            BinaryFunction::Min => self.first_if(FloatCC::LessThanOrEqual, a, b),
+            BinaryFunction::Max => self.first_if(FloatCC::GreaterThanOrEqual, a, b),
+            BinaryFunction::Atan2 => self.import("atan2", &[a, b]),
             _ => self.import("pow", &[a, b]),
         }
     }
@@ -263,7 +263,7 @@ impl<'a> Translator<'a> {
         self.builder.ins().select(first, a, b)
     }
 
-    fn branch(&mut self, c: Operand, then: &Branch, otherwise: &Branch) -> Value {
+    fn branch(&mut self, c: RegisterOperand, then: &CodeBranch, otherwise: &CodeBranch) -> Value {
         let c = self.truth(c);
         let [yes, no, merge] = [(); 3].map(|()| self.builder.create_block());
         let result = self.builder.append_block_param(merge, F64);
@@ -294,7 +294,7 @@ impl<'a> Translator<'a> {
     }
 
     /// Arguments and results of a user function pass through the stack.
-    fn call(&mut self, function: u32, args: &[Operand], outputs: &[(u32, u32)]) {
+    fn call(&mut self, function: u32, args: &[RegisterOperand], outputs: &[(u32, u32)]) {
         let results = self.functions[function as usize].outputs.len();
         let (inputs, out) = (self.stack(args.len()), self.stack(results));
         let from = self.builder.ins().stack_addr(self.pointer, inputs, 0);
@@ -318,17 +318,17 @@ impl<'a> Translator<'a> {
     }
 }
 
-fn slot_offset(slot: Slot) -> Offset32 {
+fn slot_offset(slot: ValueSlot) -> Offset32 {
     Offset32::new(i32::try_from(8 * i64::from(slot)).expect("layouts are small enough for 32-bit offsets"))
 }
 
-fn relation(rel: Rel) -> FloatCC {
+fn relation(rel: RelationalOp) -> FloatCC {
     match rel {
-        Rel::Lt => FloatCC::LessThan,
-        Rel::Le => FloatCC::LessThanOrEqual,
-        Rel::Gt => FloatCC::GreaterThan,
-        Rel::Ge => FloatCC::GreaterThanOrEqual,
-        Rel::Eq => FloatCC::Equal,
-        Rel::Ne => FloatCC::NotEqual,
+        RelationalOp::Lt => FloatCC::LessThan,
+        RelationalOp::Le => FloatCC::LessThanOrEqual,
+        RelationalOp::Gt => FloatCC::GreaterThan,
+        RelationalOp::Ge => FloatCC::GreaterThanOrEqual,
+        RelationalOp::Eq => FloatCC::Equal,
+        RelationalOp::Ne => FloatCC::NotEqual,
     }
 }

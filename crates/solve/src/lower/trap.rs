@@ -1,15 +1,15 @@
 //! Finding the operation that made a value that is not finite.
 
-use super::System;
-use bramah_expr::eval::Evaluation;
-use bramah_expr::function::External;
+use super::ExecutableSystem;
+use bramah_expr::eval::EvaluationCache;
+use bramah_expr::function::ExternalFunction;
 use bramah_expr::print::number;
-use bramah_expr::{ExprId, Exprs, Node, VarId};
+use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::FxHashMap;
 
 /// The first operation that made a value that is not finite.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trap {
+pub struct NonFiniteTrap {
     /// The operation with its numbers, as in `sqrt(-3.2)`.
     pub operation: String,
     /// The same operation as the user wrote it, as in `sqrt(valve.dp)`.
@@ -25,10 +25,10 @@ const LONGEST: usize = 200;
 
 /// The first operation in `e`, in the order of evaluation, whose arguments are finite and whose value is not; or the
 /// leaf that is not finite itself.
-pub fn find(system: &System, e: ExprId, values: &[f64]) -> Option<Trap> {
+pub fn find(system: &ExecutableSystem, e: ExprId, values: &[f64]) -> Option<NonFiniteTrap> {
     let pool = &system.dae.exprs;
-    let mut leaf = |node: Node| system.leaf(node, values);
-    let mut evaluation = Evaluation::default();
+    let mut leaf = |node: ExprNode| system.leaf(node, values);
+    let mut evaluation = EvaluationCache::default();
     if evaluation.value(pool, e, &mut leaf).is_finite() {
         return None;
     }
@@ -46,18 +46,20 @@ pub fn find(system: &System, e: ExprId, values: &[f64]) -> Option<Trap> {
     let written = pool.print_short(at, &names, LONGEST);
     let operation = with_numbers(pool, at, &mut |operand| evaluation.value(pool, operand, &mut leaf));
     let trouble = match pool.node(at) {
-        Node::Call(function, ..) => pool.functions[function.0 as usize].external().and_then(External::trouble),
+        ExprNode::Call(function, ..) => {
+            pool.functions[function.0 as usize].external().and_then(ExternalFunction::trouble)
+        }
         _ => None,
     };
-    Some(Trap { operation, written, value, trouble })
+    Some(NonFiniteTrap { operation, written, value, trouble })
 }
 
 /// The arguments that are evaluated for this value.
 fn needed_operands(pool: &Exprs, e: ExprId, value: &mut impl FnMut(ExprId) -> f64) -> Vec<ExprId> {
     match pool.node(e) {
-        Node::If(c, a, b) => vec![c, if value(c) == 0.0 { b } else { a }],
-        Node::Homotopy(a, _) | Node::Delay(a, _) => vec![a],
-        Node::Sample(..) => Vec::new(),
+        ExprNode::If(c, a, b) => vec![c, if value(c) == 0.0 { b } else { a }],
+        ExprNode::Homotopy(a, _) | ExprNode::Delay(a, _) => vec![a],
+        ExprNode::Sample(..) => Vec::new(),
         _ => pool.operands(e).as_slice().to_vec(),
     }
 }
@@ -72,15 +74,15 @@ fn with_numbers(pool: &Exprs, e: ExprId, value: &mut impl FnMut(ExprId) -> f64) 
     let places: FxHashMap<ExprId, ExprId> =
         operands.iter().zip(0..).map(|(&operand, i)| (operand, small.var(VarId(i)))).collect();
     let copy = match pool.node(e) {
-        Node::Unary(op, a) => small.intern(Node::Unary(op, places[&a])),
-        Node::Binary(op, a, b) => small.intern(Node::Binary(op, places[&a], places[&b])),
-        Node::Call(function, output, args) => {
+        ExprNode::Unary(op, a) => small.intern(ExprNode::Unary(op, places[&a])),
+        ExprNode::Binary(op, a, b) => small.intern(ExprNode::Binary(op, places[&a], places[&b])),
+        ExprNode::Call(function, output, args) => {
             let args: Vec<ExprId> = pool.args(args).iter().map(|arg| places[arg]).collect();
             small.call(function, output, &args)
         }
         _ => return String::new(),
     };
-    let brackets = matches!(pool.node(e), Node::Binary(..));
+    let brackets = matches!(pool.node(e), ExprNode::Binary(..));
     let names = |v: VarId| {
         let value = numbers.get(v.index()).copied().unwrap_or(f64::NAN);
         let text = number(value, Some(6));

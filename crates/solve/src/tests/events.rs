@@ -2,15 +2,15 @@
 
 use super::*;
 use crate::End;
-use bramah_expr::Unary;
+use bramah_expr::UnaryFunction;
 
-fn bouncing_ball() -> System {
+fn bouncing_ball() -> ExecutableSystem {
     let mut m = Make::default();
     let (h, eh) = m.state("h", 1.0);
     let (v, ev) = m.state("v", 0.0);
     let g = m.parameter("g", 9.81);
     let zero = m.num(0.0);
-    let below = m.relation("h <= 0", Rel::Le, eh, zero);
+    let below = m.relation("h <= 0", RelationalOp::Le, eh, zero);
     m.assign(Unknown::Der(h), ev);
     let fall = m.e().neg(g);
     m.assign(Unknown::Der(v), fall);
@@ -41,15 +41,15 @@ fn a_ball_comes_to_rest() {
     let (v, ev) = m.state("v", 0.0);
     let (zero, g, e) = (m.num(0.0), m.num(-9.81), m.num(-0.7));
     let (flying, eflying) = m.discrete("flying", 1.0);
-    let impact = m.relation("h <= 0", Rel::Le, eh, zero);
-    let falls = m.relation("v <= 0", Rel::Le, ev, zero);
+    let impact = m.relation("h <= 0", RelationalOp::Le, eh, zero);
+    let falls = m.relation("v <= 0", RelationalOp::Le, ev, zero);
     let both = m.e().and(impact, falls);
     let (lands, elands) = m.discrete("lands", 0.0);
     m.assign_discrete(lands, both);
     let edge = m.edge(impact);
     let back = m.e().mul(e, ev);
     let new = m.e().if_(edge, back, zero);
-    let up = m.e().rel(Rel::Gt, new, zero);
+    let up = m.e().rel(RelationalOp::Gt, new, zero);
     let hit = m.edge(elands);
     let either = m.e().or(edge, hit);
     let before = m.e().pre(flying);
@@ -58,14 +58,14 @@ fn a_ball_comes_to_rest() {
     m.assign(Unknown::Der(h), ev);
     let fall = m.e().if_(eflying, g, zero);
     m.assign(Unknown::Der(v), fall);
-    m.dae.actions.push(Action { fires: either, kind: ActionKind::Reinit(v, new), origin: ORIGIN });
+    m.dae.actions.push(EventAction { fires: either, kind: EventActionKind::Reinit(v, new), origin: ORIGIN });
     let (run, t) = run(&m.system(), Settings { stop_time: 10.0, ..Settings::default() }, &[]);
     assert_eq!(run.end, End::Reached, "{:?}", run.diagnostics);
     assert!(last(&t, "h").abs() < 1e-5 && last(&t, "v") == 0.0, "{} {}", last(&t, "h"), last(&t, "v"));
 }
 
 /// Mass on a belt, as an automaton of stick (0), forward (1) and backward (-1) slip.
-fn belt() -> System {
+fn belt() -> ExecutableSystem {
     let mut m = Make::default();
     let (x, ex) = m.state("x", 0.0);
     let (v, ev) = m.state("v", 0.0);
@@ -84,20 +84,20 @@ fn belt() -> System {
     let load = m.algebraic("load", load);
     let (mode, emode) = m.discrete("mode", 1.0);
     let zero = m.num(0.0);
-    let positive = m.relation("vr > 0", Rel::Gt, relative, zero);
-    let negative = m.relation("vr < 0", Rel::Lt, relative, zero);
-    let breaks_up = m.relation("load > Fs", Rel::Gt, load, stick);
+    let positive = m.relation("vr > 0", RelationalOp::Gt, relative, zero);
+    let negative = m.relation("vr < 0", RelationalOp::Lt, relative, zero);
+    let breaks_up = m.relation("load > Fs", RelationalOp::Gt, load, stick);
     let minus = m.e().neg(stick);
-    let breaks_down = m.relation("load < -Fs", Rel::Lt, load, minus);
+    let breaks_down = m.relation("load < -Fs", RelationalOp::Lt, load, minus);
     // stuck: breaks away when the load is too large; sliding: sticks when the relative speed changes its sign
     let before = m.e().pre(mode);
     let (one, minus_one) = (m.num(1.0), m.num(-1.0));
-    let was_stuck = m.e().rel(Rel::Eq, before, zero);
-    let was_forward = m.e().rel(Rel::Eq, before, one);
+    let was_stuck = m.e().rel(RelationalOp::Eq, before, zero);
+    let was_forward = m.e().rel(RelationalOp::Eq, before, one);
     let from_stuck = m.e().if_(breaks_down, minus_one, zero);
     let from_stuck = m.e().if_(breaks_up, one, from_stuck);
     let ends = |m: &mut Make, relation: ExprId| {
-        let bramah_expr::Node::Var(v) = m.dae.exprs.node(relation) else { panic!("a variable") };
+        let bramah_expr::ExprNode::Var(v) = m.dae.exprs.node(relation) else { panic!("a variable") };
         let before = m.e().pre(v);
         let now = m.e().not(relation);
         m.e().and(before, now)
@@ -112,12 +112,12 @@ fn belt() -> System {
     let ratio = m.e().div(relative, stribeck);
     let square = m.e().mul(ratio, ratio);
     let square = m.e().neg(square);
-    let bell = m.e().unary(Unary::Exp, square);
+    let bell = m.e().unary(UnaryFunction::Exp, square);
     let rise = m.e().sub(stick, slip);
     let rise = m.e().mul(rise, bell);
     let size = m.e().add(slip, rise);
     let friction = m.e().mul(emode, size);
-    let stuck = m.e().rel(Rel::Eq, emode, zero);
+    let stuck = m.e().rel(RelationalOp::Eq, emode, zero);
     let force = m.e().if_(stuck, load, friction);
     let force = m.algebraic("F", force);
     m.assign(Unknown::Der(x), ev);
@@ -173,7 +173,7 @@ fn time_events_are_exact_and_may_move() {
     m.when(due, next, later);
     let (one, zero) = (m.num(1.0), m.num(0.0));
     let rate = m.var(next);
-    let high = m.e().rel(Rel::Gt, rate, one);
+    let high = m.e().rel(RelationalOp::Gt, rate, one);
     let rate = m.e().if_(high, one, zero);
     m.assign(Unknown::Der(x), rate);
     let (run, t) = run(&m.system(), Settings { stop_time: 2.0, interval: 0.5, ..Settings::default() }, &[]);
@@ -193,9 +193,9 @@ fn first_order(input: VarId, m: &mut Make) {
     m.assign(Unknown::Der(x), value);
 }
 
-fn with_input() -> (System, VarId) {
+fn with_input() -> (ExecutableSystem, VarId) {
     let mut m = Make::default();
-    let u = m.add(Variable { input: true, ..variable("u") });
+    let u = m.add(FlatVariable { input: true, ..variable("u") });
     m.dae.inputs.push(u);
     first_order(u, &mut m);
     (m.system(), u)
@@ -204,7 +204,7 @@ fn with_input() -> (System, VarId) {
 #[test]
 fn held_inputs_jump_at_their_samples() {
     let (system, u) = with_input();
-    let input = Input::held(u, vec![0.0, 0.5], vec![0.0, 1.0]);
+    let input = RecordedInput::held(u, vec![0.0, 0.5], vec![0.0, 1.0]);
     let (run, t) = run(&system, Settings { interval: 0.25, ..Settings::default() }, &[input]);
     assert_eq!(run.end, End::Reached, "{:?}", run.diagnostics);
     assert_eq!(t.times, [0.0, 0.25, 0.5, 0.5, 0.75, 1.0]);
@@ -215,7 +215,7 @@ fn held_inputs_jump_at_their_samples() {
 #[test]
 fn linear_inputs_run_straight() {
     let (system, u) = with_input();
-    let input = Input::linear(u, vec![0.0, 1.0], vec![0.0, 1.0]);
+    let input = RecordedInput::linear(u, vec![0.0, 1.0], vec![0.0, 1.0]);
     let (run, t) = run(&system, Settings { interval: 0.25, ..Settings::default() }, &[input]);
     assert_eq!(run.end, End::Reached, "{:?}", run.diagnostics);
     assert_eq!(t.column("u").expect("recorded"), [0.0, 0.25, 0.5, 0.75, 1.0]);
@@ -231,7 +231,7 @@ fn a_recording_at_1_khz_is_cheap() {
     let (run, t) = run(
         &system,
         Settings { stop_time: 4.0, interval: 0.01, ..Settings::default() },
-        &[Input::held(u, times, values)],
+        &[RecordedInput::held(u, times, values)],
     );
     assert_eq!(run.end, End::Reached, "{:?}", run.diagnostics);
     assert!(run.statistics.residual_evaluations < 30_000, "{:?}", run.statistics);
@@ -244,12 +244,12 @@ fn floor_counts_cells_up_and_down() {
     let time = m.e().time();
     let (two, three) = (m.num(2.0), m.num(3.2));
     let phase = m.e().mul(two, time);
-    let wave = m.e().unary(Unary::Sin, phase);
+    let wave = m.e().unary(UnaryFunction::Sin, phase);
     let y = m.e().mul(three, wave);
     let y = m.algebraic("y", y);
     let (cell, _) = m.discrete("floor(y)", 0.0);
-    m.dae.crossings.push(Crossing { mode: cell, kind: CrossingKind::Floor(y), origin: ORIGIN });
-    let value = m.e().unary(Unary::Floor, y);
+    m.dae.crossings.push(ZeroCrossing { mode: cell, kind: CrossingKind::Floor(y), origin: ORIGIN });
+    let value = m.e().unary(UnaryFunction::Floor, y);
     m.assign_discrete(cell, value);
     let (run, t) = run(&m.system(), Settings { stop_time: 3.0, interval: 0.01, ..Settings::default() }, &[]);
     assert_eq!(run.end, End::Reached, "{:?}", run.diagnostics);
@@ -268,7 +268,7 @@ fn a_sign_without_a_state_between_is_named_as_chattering() {
     let mut m = Make::default();
     let (x, e) = m.state("x", 0.0);
     let half = m.num(0.5);
-    let above = m.relation("x > 0.5", Rel::Gt, e, half);
+    let above = m.relation("x > 0.5", RelationalOp::Gt, e, half);
     let (up, down) = (m.num(1.0), m.num(-1.0));
     let value = m.e().if_(above, down, up);
     m.assign(Unknown::Der(x), value);

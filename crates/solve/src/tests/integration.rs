@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::{End, State};
-use bramah_expr::Unary;
+use bramah_expr::UnaryFunction;
 
-fn decay() -> System {
+fn decay() -> ExecutableSystem {
     let mut m = Make::default();
     let (x, e) = m.state("x", 1.0);
     let rate = m.parameter("rate", 1.0);
@@ -58,7 +58,7 @@ fn goes_on_from_a_saved_state() {
     assert!((last(&t, "x") - (-1.0_f64).exp()).abs() < 1e-5);
 }
 
-fn van_der_pol(mu: f64) -> System {
+fn van_der_pol(mu: f64) -> ExecutableSystem {
     let mut m = Make::default();
     let (x, ex) = m.state("x", 2.0);
     let (y, ey) = m.state("y", 0.0);
@@ -149,10 +149,10 @@ fn without_unknowns_there_are_still_rows_and_roots() {
     let time = m.e().time();
     let w = m.num(6.0);
     let phase = m.e().mul(w, time);
-    let y = m.e().unary(Unary::Sin, phase);
+    let y = m.e().unary(UnaryFunction::Sin, phase);
     let y = m.algebraic("y", y);
     let zero = m.num(0.0);
-    let up = m.relation("y > 0", Rel::Gt, y, zero);
+    let up = m.relation("y > 0", RelationalOp::Gt, y, zero);
     let (count, _) = m.discrete("count", 0.0);
     let before = m.e().pre(count);
     let one = m.num(1.0);
@@ -183,7 +183,7 @@ fn the_root_of_a_negative_number_is_named() {
     // x' = -sqrt(x) - 1 passes zero
     let mut m = Make::default();
     let (x, e) = m.state("x", 1.0);
-    let root = m.e().unary(Unary::Sqrt, e);
+    let root = m.e().unary(UnaryFunction::Sqrt, e);
     let one = m.num(1.0);
     let sum = m.e().add(root, one);
     let value = m.e().neg(sum);

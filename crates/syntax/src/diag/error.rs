@@ -1,6 +1,6 @@
 //! Diagnostics with their texts, as the error of a function.
 
-use super::render::{Format, full, render};
+use super::render::{DiagnosticFormat, full, render};
 use super::{Diagnostic, Sources};
 use std::fmt;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ impl Error {
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(render(&self.sources, &self.diagnostics, Format::Short, 120, false).trim_end())
+        f.write_str(render(&self.sources, &self.diagnostics, DiagnosticFormat::Short, 120, false).trim_end())
     }
 }
 

@@ -1,6 +1,6 @@
 //! The one diagnostic type, and the places in source texts it points to.
 //!
-//! Every stage returns [`Checked`]: what it could make of its input, and what it has to say about it.
+//! Every stage returns [`StageResult`]: what it could make of its input, and what it has to say about it.
 //! Rendering (human, short, JSON) lives in [`render`]; the list of codes in [`codes`].
 
 pub mod codes;
@@ -37,7 +37,7 @@ impl Span {
 
 /// One text the user wrote, or one that ships with bramah.
 #[derive(Clone, Debug)]
-pub struct Source {
+pub struct SourceText {
     /// The path as the user knows it.
     pub path: String,
     /// The whole text.
@@ -47,23 +47,23 @@ pub struct Source {
 /// All texts of one run, in the order in which they were read.
 #[derive(Clone, Debug, Default)]
 pub struct Sources {
-    files: Vec<Source>,
+    files: Vec<SourceText>,
 }
 
 impl Sources {
     /// All texts in the order in which they were read.
-    pub fn iter(&self) -> impl Iterator<Item = &Source> {
+    pub fn iter(&self) -> impl Iterator<Item = &SourceText> {
         self.files.iter()
     }
 
     /// Adds a text and returns its index.
     pub fn add(&mut self, path: impl Into<String>, text: impl Into<String>) -> FileId {
-        self.files.push(Source { path: path.into(), text: text.into() });
+        self.files.push(SourceText { path: path.into(), text: text.into() });
         FileId(u32::try_from(self.files.len() - 1).expect("fewer than 2^32 files"))
     }
 
     /// The text behind an index.
-    pub fn get(&self, file: FileId) -> &Source {
+    pub fn get(&self, file: FileId) -> &SourceText {
         &self.files[file.0 as usize]
     }
 
@@ -115,12 +115,12 @@ pub struct Diagnostic {
     /// What to do about it.
     pub help: Vec<String>,
     /// A change of the text that would do it, for editors.
-    pub fix: Option<Fix>,
+    pub fix: Option<TextReplacement>,
 }
 
 /// A change of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fix {
+pub struct TextReplacement {
     /// What is replaced; empty where something is inserted.
     pub span: Span,
     /// What stands there afterwards.
@@ -178,7 +178,7 @@ impl Diagnostic {
     /// Proposes a change of the text.
     #[must_use]
     pub fn fix(mut self, span: Span, text: impl Into<String>) -> Self {
-        self.fix = Some(Fix { span, text: text.into() });
+        self.fix = Some(TextReplacement { span, text: text.into() });
         self
     }
 
@@ -215,22 +215,22 @@ impl Diagnostic {
 ///
 /// `value` is `None` only when there is an error among the diagnostics.
 #[derive(Clone, Debug)]
-pub struct Checked<T> {
+pub struct StageResult<T> {
     /// The result, if one could be made.
     pub value: Option<T>,
     /// Errors, warnings and notes, in the order of their places.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-impl<T> Checked<T> {
+impl<T> StageResult<T> {
     /// A result with remarks.
     pub fn new(value: T, diagnostics: Vec<Diagnostic>) -> Self {
-        Checked { value: Some(value), diagnostics }
+        StageResult { value: Some(value), diagnostics }
     }
 
     /// No result.
     pub fn failed(diagnostics: Vec<Diagnostic>) -> Self {
-        Checked { value: None, diagnostics }
+        StageResult { value: None, diagnostics }
     }
 
     /// Appends the diagnostics to `sink` and hands out the value, or nothing if there was an error.

@@ -13,7 +13,7 @@ const LONGEST_LIST: usize = 10;
 
 /// How diagnostics are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Format {
+pub enum DiagnosticFormat {
     /// With the text concerned, several lines each.
     #[default]
     Human,
@@ -25,20 +25,26 @@ pub enum Format {
 
 /// Writes diagnostics in the given format, each ended by a line break.
 ///
-/// `width` (characters a line) and `colour` matter for [`Format::Human`] only.
-pub fn render(sources: &Sources, diagnostics: &[Diagnostic], format: Format, width: usize, colour: bool) -> String {
+/// `width` (characters a line) and `colour` matter for [`DiagnosticFormat::Human`] only.
+pub fn render(
+    sources: &Sources,
+    diagnostics: &[Diagnostic],
+    format: DiagnosticFormat,
+    width: usize,
+    colour: bool,
+) -> String {
     let mut out = String::new();
     for diagnostic in diagnostics {
         match format {
-            Format::Human => {
+            DiagnosticFormat::Human => {
                 out.push_str(&human(sources, diagnostic, width, colour));
                 out.push_str("\n\n");
             }
-            Format::Short => {
+            DiagnosticFormat::Short => {
                 out.push_str(&short(sources, diagnostic));
                 out.push('\n');
             }
-            Format::Json => {
+            DiagnosticFormat::Json => {
                 out.push_str(&json(sources, diagnostic));
                 out.push('\n');
             }
@@ -52,12 +58,12 @@ const WIDTH: usize = 100;
 
 /// What the command prints, without colour: with the text concerned, causes and help.
 pub fn full(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
-    render(sources, diagnostics, Format::Human, WIDTH, false).trim_end().to_owned()
+    render(sources, diagnostics, DiagnosticFormat::Human, WIDTH, false).trim_end().to_owned()
 }
 
 /// One line a diagnostic, without colour: what tests and editors read.
 pub fn short_list(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
-    render(sources, diagnostics, Format::Short, usize::MAX, false)
+    render(sources, diagnostics, DiagnosticFormat::Short, usize::MAX, false)
 }
 
 /// `2 errors, 1 warning`, or nothing where there is nothing to count.

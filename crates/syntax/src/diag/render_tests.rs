@@ -23,7 +23,7 @@ fn open_port() -> (Sources, Diagnostic) {
 #[test]
 fn human_shows_place_and_labels() {
     let (sources, d) = open_port();
-    insta::assert_snapshot!(render(&sources, &[d], Format::Human, 100, false));
+    insta::assert_snapshot!(render(&sources, &[d], DiagnosticFormat::Human, 100, false));
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn short_is_one_line() {
 #[test]
 fn json_has_the_promised_keys() {
     let (sources, d) = open_port();
-    let text = render(&sources, &[d], Format::Json, 100, false);
+    let text = render(&sources, &[d], DiagnosticFormat::Json, 100, false);
     let value: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(value["labels"][0]["end"]["column"], 13);
     assert_eq!(value["instance"], "pump1");
@@ -47,7 +47,7 @@ fn labels_in_two_files_and_at_the_end_of_text() {
     let (mut sources, d) = open_port();
     let other = sources.add("P.mo", "model P\nend P;");
     let d = d.at(Span { file: other, start: 14, end: 14 }, "something is missing here");
-    insta::assert_snapshot!(render(&sources, &[d], Format::Human, 100, false));
+    insta::assert_snapshot!(render(&sources, &[d], DiagnosticFormat::Human, 100, false));
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn long_lists_are_cut() {
     let (sources, mut d) = open_port();
     d.notes = (0..24).map(|i| format!("fact {i}")).collect();
     d.help = vec![(0..30).map(|i| format!("  line {i}")).collect::<Vec<_>>().join("\n")];
-    let text = render(&sources, &[d], Format::Human, 100, false);
+    let text = render(&sources, &[d], DiagnosticFormat::Human, 100, false);
     assert!(text.contains("and 14 more"), "{text}");
     assert!(!text.contains("fact 10"), "{text}");
     assert!(!text.contains("line 11"), "{text}");
@@ -67,7 +67,7 @@ fn a_line_of_100_kb_and_control_characters_do_no_harm() {
     let name = "x\u{1}\u{fe}".repeat(30_000);
     let file = sources.add("Big.mo", name.clone());
     let d = Diagnostic::new(Code::Syntax, "odd \u{7} text").at(Span { file, start: 60_001, end: u32::MAX }, "here");
-    let text = render(&sources, &[d], Format::Human, 100, false);
+    let text = render(&sources, &[d], DiagnosticFormat::Human, 100, false);
     assert!(text.len() < 5_000, "{}", text.len());
     assert!(text.contains("Big.mo:1:"));
     assert!(!text.contains('\u{7}'));
@@ -76,7 +76,7 @@ fn a_line_of_100_kb_and_control_characters_do_no_harm() {
 #[test]
 fn messages_without_place_have_no_margin() {
     let d = Diagnostic::new(Code::BadArgument, "no such model").note("there are two").help("name one");
-    insta::assert_snapshot!(render(&Sources::default(), &[d], Format::Human, 100, false), @r"
+    insta::assert_snapshot!(render(&Sources::default(), &[d], DiagnosticFormat::Human, 100, false), @r"
     error[E901]: no such model
      = note: there are two
      = help: name one
@@ -96,7 +96,7 @@ proptest::proptest! {
         let mut sources = Sources::default();
         let file = sources.add("x.mo", text);
         let d = Diagnostic::new(Code::Syntax, "m").at(Span { file, start, end: start + length }, "here");
-        for format in [Format::Human, Format::Short, Format::Json] {
+        for format in [DiagnosticFormat::Human, DiagnosticFormat::Short, DiagnosticFormat::Json] {
             render(&sources, std::slice::from_ref(&d), format, width, true);
         }
     }

@@ -1,22 +1,24 @@
 //! The sections of a long class, and its end.
 
-use super::{Open, OpenKind, Parse, Parser, element, equation, expr, is_class_keyword, modification, statement};
-use crate::ast::{Class, ClassBody, ClassKind, Ident, LongBody, Modification, Prefixes};
+use super::{
+    OpenBlock, OpenBlockKind, ParseResult, Parser, element, equation, expr, is_class_keyword, modification, statement,
+};
+use crate::ast::{Class, ClassBody, ClassKind, ElementPrefixes, Ident, LongBody, Modification};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::token::TokenKind;
 
 /// Which kind of section of a class we are in.
 #[derive(Clone, Copy, PartialEq)]
-enum Section {
+enum SectionKind {
     Elements,
     Equations { initial: bool },
     Algorithm { initial: bool },
 }
 
 /// A long class while its body is read.
-struct Body {
+struct LongBodyBuilder {
     out: LongBody,
-    section: Section,
+    section: SectionKind,
     protected: bool,
     /// Set by a declaration in an equation section, for which the section is blamed once.
     misplaced: bool,
@@ -30,15 +32,21 @@ pub(super) fn long_class(
     p: &mut Parser<'_>,
     start: Span,
     kind: ClassKind,
-    prefixes: Prefixes,
+    prefixes: ElementPrefixes,
     name: Ident,
     class_extends: Option<Option<Modification>>,
-) -> Parse<Box<Class>> {
+) -> ParseResult<Box<Class>> {
     let description = modification::description(p);
-    let open = Open { kind: OpenKind::Class(name.name), span: name.span, else_if: None };
+    let open = OpenBlock { kind: OpenBlockKind::Class(name.name), span: name.span, else_if: None };
     let out = LongBody { class_extends, ..LongBody::default() };
-    let mut body =
-        Body { out, section: Section::Elements, protected: false, misplaced: false, annotation: None, annotated: None };
+    let mut body = LongBodyBuilder {
+        out,
+        section: SectionKind::Elements,
+        protected: false,
+        misplaced: false,
+        annotation: None,
+        annotated: None,
+    };
     p.open.push(open);
     while !p.at(TokenKind::Eof) && !at_class_end(p) {
         let before = p.at;
@@ -72,7 +80,7 @@ fn at_class_end(p: &Parser<'_>) -> bool {
     p.at(TokenKind::End) && p.is_closing_end() && !is_block
 }
 
-fn class_end(p: &mut Parser<'_>, open: Open, name: Ident) {
+fn class_end(p: &mut Parser<'_>, open: OpenBlock, name: Ident) {
     let found = p.peek(1);
     if p.at(TokenKind::Eof) {
         return p.unclosed(open);
@@ -93,7 +101,7 @@ fn class_end(p: &mut Parser<'_>, open: Open, name: Ident) {
 }
 
 /// A section keyword, or one element, equation or statement with its semicolon.
-fn section_or_item(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
+fn section_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     check_annotation_is_last(p, body);
     let before = body.section;
     let result = section_keyword_or_item(p, body);
@@ -101,11 +109,11 @@ fn section_or_item(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
     result
 }
 
-fn section_keyword_or_item(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
+fn section_keyword_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     match p.kind() {
         TokenKind::Public | TokenKind::Protected => {
             body.protected = p.at(TokenKind::Protected);
-            body.section = Section::Elements;
+            body.section = SectionKind::Elements;
             p.bump();
         }
         TokenKind::Initial if matches!(p.peek_kind(1), TokenKind::Equation | TokenKind::Algorithm) => {
@@ -120,36 +128,36 @@ fn section_keyword_or_item(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
     Ok(())
 }
 
-fn enter_section(p: &mut Parser<'_>, body: &mut Body, initial: bool) {
+fn enter_section(p: &mut Parser<'_>, body: &mut LongBodyBuilder, initial: bool) {
     if p.at(TokenKind::Equation) {
-        body.section = Section::Equations { initial };
+        body.section = SectionKind::Equations { initial };
     } else {
-        body.section = Section::Algorithm { initial };
+        body.section = SectionKind::Algorithm { initial };
         let sections = if initial { &mut body.out.initial_algorithms } else { &mut body.out.algorithms };
         sections.push(Vec::new());
     }
     p.bump();
 }
 
-fn item(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
+fn item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     if stray_word(p) || p.stray_semicolon() {
         return Ok(());
     }
-    if body.section != Section::Elements && begins_declaration(p) {
+    if body.section != SectionKind::Elements && begins_declaration(p) {
         blame_declaration(p, body);
         return element_item(p, body);
     }
-    if body.section == Section::Elements {
-        body.section = forgotten_section(p).unwrap_or(Section::Elements);
+    if body.section == SectionKind::Elements {
+        body.section = forgotten_section(p).unwrap_or(SectionKind::Elements);
     }
     match body.section {
-        Section::Elements => element_item(p, body)?,
-        Section::Equations { initial } => {
+        SectionKind::Elements => element_item(p, body)?,
+        SectionKind::Equations { initial } => {
             let equations = p.list(equation::equation);
             let all = if initial { &mut body.out.initial_equations } else { &mut body.out.equations };
             all.extend(equations);
         }
-        Section::Algorithm { initial } => {
+        SectionKind::Algorithm { initial } => {
             let statements = p.list(statement::statement);
             let sections = if initial { &mut body.out.initial_algorithms } else { &mut body.out.algorithms };
             match sections.last_mut() {
@@ -161,12 +169,12 @@ fn item(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
     Ok(())
 }
 
-fn element_item(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
+fn element_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     element::element(p, body.protected, &mut body.out.elements)?;
     p.semicolon()
 }
 
-fn blame_declaration(p: &mut Parser<'_>, body: &mut Body) {
+fn blame_declaration(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
     if !std::mem::replace(&mut body.misplaced, true) {
         let rule = "a declaration stands before the first `equation` or `algorithm`, or after `public` or `protected`";
         p.slip(rule, "a declaration in an equation section", "move it up, or write `public` before it");
@@ -217,17 +225,17 @@ fn begins_declaration(p: &Parser<'_>) -> bool {
 }
 
 /// Reports an equation or statement among the declarations; gives the section that was meant.
-fn forgotten_section(p: &mut Parser<'_>) -> Option<Section> {
+fn forgotten_section(p: &mut Parser<'_>) -> Option<SectionKind> {
     use TokenKind as T;
     let follows = p.peek_kind(1);
     let (section, keyword) = match p.kind() {
-        T::Connect | T::If | T::For | T::When => (Section::Equations { initial: false }, "equation"),
-        T::Der if follows == T::LeftParen => (Section::Equations { initial: false }, "equation"),
+        T::Connect | T::If | T::For | T::When => (SectionKind::Equations { initial: false }, "equation"),
+        T::Der if follows == T::LeftParen => (SectionKind::Equations { initial: false }, "equation"),
         T::Ident if follows == T::Equal || follows == T::LeftParen => {
-            (Section::Equations { initial: false }, "equation")
+            (SectionKind::Equations { initial: false }, "equation")
         }
-        T::While => (Section::Algorithm { initial: false }, "algorithm"),
-        T::Ident if follows == T::Assign => (Section::Algorithm { initial: false }, "algorithm"),
+        T::While => (SectionKind::Algorithm { initial: false }, "algorithm"),
+        T::Ident if follows == T::Assign => (SectionKind::Algorithm { initial: false }, "algorithm"),
         _ => return None,
     };
     let found = p.describe(p.token());
@@ -236,7 +244,7 @@ fn forgotten_section(p: &mut Parser<'_>) -> Option<Section> {
     Some(section)
 }
 
-fn class_annotation(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
+fn class_annotation(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     let span = p.span();
     if let Some(annotation) = modification::annotation(p)? {
         match &mut body.annotation {
@@ -248,7 +256,7 @@ fn class_annotation(p: &mut Parser<'_>, body: &mut Body) -> Parse<()> {
     p.semicolon()
 }
 
-fn check_annotation_is_last(p: &mut Parser<'_>, body: &mut Body) {
+fn check_annotation_is_last(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
     if let Some(span) = body.annotated.take() {
         let diagnostic = Diagnostic::new(Code::Syntax, "the annotation of a class stands at its end")
             .at(span, "something follows this annotation")
@@ -258,7 +266,7 @@ fn check_annotation_is_last(p: &mut Parser<'_>, body: &mut Body) {
 }
 
 /// `external "C" y = f(x) annotation(...);`
-fn external(p: &mut Parser<'_>, out: &mut LongBody) -> Parse<()> {
+fn external(p: &mut Parser<'_>, out: &mut LongBody) -> ParseResult<()> {
     let start = p.span();
     p.bump();
     let inner = p.token().start;

@@ -1,8 +1,8 @@
 //! Files, and the heads and short forms of classes.
 
-use super::modification::Place;
-use super::{Parse, Parser, Stop, body, element, is_class_keyword, modification};
-use crate::ast::{Class, ClassBody, ClassKind, EnumLiteral, Ident, Path, Prefixes, StoredDefinition};
+use super::modification::ModificationContext;
+use super::{ParseAbort, ParseResult, Parser, body, element, is_class_keyword, modification};
+use crate::ast::{Class, ClassBody, ClassKind, ElementPrefixes, EnumLiteral, Ident, Path, StoredDefinition};
 use crate::diag::Span;
 use crate::token::TokenKind;
 
@@ -15,7 +15,7 @@ pub fn stored_definition(p: &mut Parser<'_>) -> StoredDefinition {
         let before = p.at;
         match top_level_class(p) {
             Ok(class) => file.classes.push(*class),
-            Err(Stop) => recover_to_class(p),
+            Err(ParseAbort) => recover_to_class(p),
         }
         if p.at == before {
             p.bump();
@@ -24,7 +24,7 @@ pub fn stored_definition(p: &mut Parser<'_>) -> StoredDefinition {
     file
 }
 
-fn within(p: &mut Parser<'_>) -> Parse<Option<Path>> {
+fn within(p: &mut Parser<'_>) -> ParseResult<Option<Path>> {
     if !p.eat(TokenKind::Within) {
         return Ok(None);
     }
@@ -35,13 +35,13 @@ fn within(p: &mut Parser<'_>) -> Parse<Option<Path>> {
     Ok(path)
 }
 
-fn top_level_class(p: &mut Parser<'_>) -> Parse<Box<Class>> {
+fn top_level_class(p: &mut Parser<'_>) -> ParseResult<Box<Class>> {
     let start = p.span();
     let final_ = p.eat(TokenKind::Final);
     if !is_class_keyword(p.kind()) {
         return Err(p.no_class());
     }
-    let mut class = class(p, Prefixes { final_, ..Prefixes::default() })?;
+    let mut class = class(p, ElementPrefixes { final_, ..ElementPrefixes::default() })?;
     class.span = class.span.to(start);
     if p.semicolon().is_err() {
         recover_to_class(p);
@@ -60,12 +60,12 @@ fn recover_to_class(p: &mut Parser<'_>) {
 // Heads.
 
 /// A class from `encapsulated`, `partial` or its keyword on.
-pub(super) fn class(p: &mut Parser<'_>, prefixes: Prefixes) -> Parse<Box<Class>> {
+pub(super) fn class(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     p.nested(|p| class_definition(p, prefixes))
 }
 
 /// A class with what may follow it when it is replaceable.
-pub(super) fn replaceable_class(p: &mut Parser<'_>, start: Span, prefixes: Prefixes) -> Parse<Box<Class>> {
+pub(super) fn replaceable_class(p: &mut Parser<'_>, start: Span, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let mut class = class(p, prefixes)?;
     if p.at(TokenKind::Constrainedby) {
         class.constraint = modification::constraint(p)?;
@@ -77,14 +77,14 @@ pub(super) fn replaceable_class(p: &mut Parser<'_>, start: Span, prefixes: Prefi
     Ok(class)
 }
 
-fn class_definition(p: &mut Parser<'_>, mut prefixes: Prefixes) -> Parse<Box<Class>> {
+fn class_definition(p: &mut Parser<'_>, mut prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let start = p.span();
     prefixes.encapsulated = p.eat(TokenKind::Encapsulated);
     prefixes.partial = p.eat(TokenKind::Partial);
     let (kind, keyword) = class_kind(p)?;
     if p.eat(TokenKind::Extends) {
         let name = p.ident("the name of the inherited class")?;
-        let modification = modification::optional_class_modification(p, Place::Extends)?;
+        let modification = modification::optional_class_modification(p, ModificationContext::Extends)?;
         return body::long_class(p, start, kind, prefixes, name, Some(modification));
     }
     let name = class_name(p, keyword)?;
@@ -95,7 +95,7 @@ fn class_definition(p: &mut Parser<'_>, mut prefixes: Prefixes) -> Parse<Box<Cla
 }
 
 /// The name of a class, which is missing when the next line is the declaration of a component.
-fn class_name(p: &mut Parser<'_>, keyword: &str) -> Parse<Ident> {
+fn class_name(p: &mut Parser<'_>, keyword: &str) -> ParseResult<Ident> {
     let what = format!("the name of the {keyword}");
     let declares = matches!(
         p.peek_kind(2),
@@ -113,7 +113,7 @@ fn class_name(p: &mut Parser<'_>, keyword: &str) -> Parse<Ident> {
 }
 
 /// The specialised class, with its main keyword.
-fn class_kind(p: &mut Parser<'_>) -> Parse<(ClassKind, &'static str)> {
+fn class_kind(p: &mut Parser<'_>) -> ParseResult<(ClassKind, &'static str)> {
     let purity = match p.kind() {
         TokenKind::Pure => Some(true),
         TokenKind::Impure => Some(false),
@@ -145,7 +145,13 @@ fn class_kind(p: &mut Parser<'_>) -> Parse<(ClassKind, &'static str)> {
 
 // The short forms.
 
-fn short_class(p: &mut Parser<'_>, start: Span, kind: ClassKind, prefixes: Prefixes, name: Ident) -> Parse<Box<Class>> {
+fn short_class(
+    p: &mut Parser<'_>,
+    start: Span,
+    kind: ClassKind,
+    prefixes: ElementPrefixes,
+    name: Ident,
+) -> ParseResult<Box<Class>> {
     let body = match p.kind() {
         TokenKind::Enumeration => enumeration(p)?,
         TokenKind::Der => derivative(p)?,
@@ -156,16 +162,16 @@ fn short_class(p: &mut Parser<'_>, start: Span, kind: ClassKind, prefixes: Prefi
     Ok(Box::new(Class { name, kind, prefixes, constraint: None, body, description, annotation, span }))
 }
 
-fn short_body(p: &mut Parser<'_>) -> Parse<ClassBody> {
+fn short_body(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     let prefix = element::type_prefix(p);
     let base = p.path("the name of a class")?;
     let subscripts = element::optional_subscripts(p)?;
-    let modification = modification::optional_class_modification(p, Place::Elsewhere)?;
+    let modification = modification::optional_class_modification(p, ModificationContext::Elsewhere)?;
     Ok(ClassBody::Short { prefix, base, subscripts, modification })
 }
 
 /// `enumeration(a, b "text")` or `enumeration(:)`.
-fn enumeration(p: &mut Parser<'_>) -> Parse<ClassBody> {
+fn enumeration(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;
     let mut literals = Vec::new();
@@ -180,14 +186,14 @@ fn enumeration(p: &mut Parser<'_>) -> Parse<ClassBody> {
     Ok(ClassBody::Enumeration((!open_ended).then_some(literals)))
 }
 
-fn literal(p: &mut Parser<'_>) -> Parse<EnumLiteral> {
+fn literal(p: &mut Parser<'_>) -> ParseResult<EnumLiteral> {
     let name = p.ident("the name of a literal")?;
     let (description, _) = modification::comment(p)?;
     Ok(EnumLiteral { name, description })
 }
 
 /// `der(f, x, y)`.
-fn derivative(p: &mut Parser<'_>) -> Parse<ClassBody> {
+fn derivative(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;
     let function = p.path("the name of a function")?;

@@ -1,25 +1,25 @@
 //! Elements of a class: imports, `extends`, components.
 
-use super::modification::Place;
-use super::{Parse, Parser, class, expr, is_class_keyword, modification};
+use super::modification::ModificationContext;
+use super::{ParseResult, Parser, class, expr, is_class_keyword, modification};
 use crate::ast::{
-    Causality, Component, Constraint, Element, ElementKind, Extends, Ident, Import, Modification, Path, Prefixes,
-    Subscript, TypePrefix, Variability,
+    CausalityPrefix, ComponentDeclaration, ConstrainingClause, Element, ElementKind, ElementPrefixes, ExtendsClause,
+    Ident, Import, Modification, Path, Subscript, TypePrefix, VariabilityPrefix,
 };
 use crate::diag::Span;
 use crate::token::TokenKind;
 
 /// What all components of one clause share.
-struct Clause {
+struct ComponentClause {
     start: Span,
-    prefixes: Prefixes,
+    prefixes: ElementPrefixes,
     prefix: TypePrefix,
     class: Path,
     subscripts: Vec<Subscript>,
 }
 
 /// One element, without its semicolon; a clause with several components gives several.
-pub(super) fn element(p: &mut Parser<'_>, protected: bool, elements: &mut Vec<Element>) -> Parse<()> {
+pub(super) fn element(p: &mut Parser<'_>, protected: bool, elements: &mut Vec<Element>) -> ParseResult<()> {
     let start = p.span();
     let kind = match p.kind() {
         TokenKind::Import => ElementKind::Import(import(p)?),
@@ -38,7 +38,7 @@ pub(super) fn element(p: &mut Parser<'_>, protected: bool, elements: &mut Vec<El
 
 // Imports and extends.
 
-fn import(p: &mut Parser<'_>) -> Parse<Import> {
+fn import(p: &mut Parser<'_>) -> ParseResult<Import> {
     p.bump();
     if p.at(TokenKind::Ident) && p.peek_kind(1) == TokenKind::Equal {
         let alias = Some(p.ident("a name")?);
@@ -72,7 +72,7 @@ fn import(p: &mut Parser<'_>) -> Parse<Import> {
     Ok(import)
 }
 
-fn import_list(p: &mut Parser<'_>) -> Parse<Vec<Ident>> {
+fn import_list(p: &mut Parser<'_>) -> ParseResult<Vec<Ident>> {
     let opened = p.span();
     p.bump();
     let mut names = vec![p.ident("a name")?];
@@ -83,19 +83,19 @@ fn import_list(p: &mut Parser<'_>) -> Parse<Vec<Ident>> {
     Ok(names)
 }
 
-fn extends(p: &mut Parser<'_>) -> Parse<Extends> {
+fn extends(p: &mut Parser<'_>) -> ParseResult<ExtendsClause> {
     p.bump();
     let base = p.path("the name of a class")?;
-    let modification = modification::optional_class_modification(p, Place::Extends)?;
+    let modification = modification::optional_class_modification(p, ModificationContext::Extends)?;
     modification::annotation(p)?;
-    Ok(Extends { base, modification })
+    Ok(ExtendsClause { base, modification })
 }
 
 // Prefixes.
 
 /// `redeclare final inner outer replaceable`, which have this order.
-fn prefixes(p: &mut Parser<'_>) -> Prefixes {
-    let mut prefixes = Prefixes::default();
+fn prefixes(p: &mut Parser<'_>) -> ElementPrefixes {
+    let mut prefixes = ElementPrefixes::default();
     let mut last = 0;
     loop {
         let (rank, flag) = match p.kind() {
@@ -150,15 +150,15 @@ fn check_order(p: &mut Parser<'_>, rank: u8, last: u8) {
 fn component_clause(
     p: &mut Parser<'_>,
     start: Span,
-    prefixes: Prefixes,
+    prefixes: ElementPrefixes,
     protected: bool,
     elements: &mut Vec<Element>,
-) -> Parse<()> {
+) -> ParseResult<()> {
     let prefix = type_prefix(p);
     check_late_prefix(p);
     let class = p.path("a type or a keyword such as `parameter`, `model`, `equation`")?;
     let subscripts = optional_subscripts(p)?;
-    let clause = Clause { start, prefixes, prefix, class, subscripts };
+    let clause = ComponentClause { start, prefixes, prefix, class, subscripts };
     let first = elements.len();
     loop {
         let start = if elements.len() == first { clause.start } else { p.span() };
@@ -187,14 +187,14 @@ fn check_late_prefix(p: &mut Parser<'_>) {
     }
 }
 
-fn component(p: &mut Parser<'_>, clause: &Clause) -> Parse<Component> {
+fn component(p: &mut Parser<'_>, clause: &ComponentClause) -> ParseResult<ComponentDeclaration> {
     let name = component_name(p)?;
     let mut subscripts = optional_subscripts(p)?;
     subscripts.extend(clause.subscripts.iter().cloned());
     let modification = modification::modification(p)?;
     let condition = if p.eat(TokenKind::If) { Some(expr::expression(p)?) } else { None };
     let (description, annotation) = modification::comment(p)?;
-    Ok(Component {
+    Ok(ComponentDeclaration {
         name,
         prefixes: clause.prefixes,
         prefix: clause.prefix,
@@ -208,7 +208,7 @@ fn component(p: &mut Parser<'_>, clause: &Clause) -> Parse<Component> {
     })
 }
 
-fn component_name(p: &mut Parser<'_>) -> Parse<Ident> {
+fn component_name(p: &mut Parser<'_>) -> ParseResult<Ident> {
     if matches!(p.kind(), TokenKind::Equal | TokenKind::LeftParen | TokenKind::Dot) {
         let help = "equations stand after the keyword `equation`";
         return Err(p.unexpected_in_item("the name of a component", Some(help)));
@@ -220,7 +220,7 @@ fn component_name(p: &mut Parser<'_>) -> Parse<Ident> {
 }
 
 /// `[3, :]`, if there.
-pub(super) fn optional_subscripts(p: &mut Parser<'_>) -> Parse<Vec<Subscript>> {
+pub(super) fn optional_subscripts(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     if p.at(TokenKind::LeftBracket) { expr::subscripts(p) } else { Ok(Vec::new()) }
 }
 
@@ -228,11 +228,11 @@ fn set_prefix(prefix: &mut TypePrefix, kind: TokenKind) {
     match kind {
         TokenKind::Flow => prefix.flow = true,
         TokenKind::Stream => prefix.stream = true,
-        TokenKind::Discrete => prefix.variability = Some(Variability::Discrete),
-        TokenKind::Parameter => prefix.variability = Some(Variability::Parameter),
-        TokenKind::Constant => prefix.variability = Some(Variability::Constant),
-        TokenKind::Input => prefix.causality = Some(Causality::Input),
-        TokenKind::Output => prefix.causality = Some(Causality::Output),
+        TokenKind::Discrete => prefix.variability = Some(VariabilityPrefix::Discrete),
+        TokenKind::Parameter => prefix.variability = Some(VariabilityPrefix::Parameter),
+        TokenKind::Constant => prefix.variability = Some(VariabilityPrefix::Constant),
+        TokenKind::Input => prefix.causality = Some(CausalityPrefix::Input),
+        TokenKind::Output => prefix.causality = Some(CausalityPrefix::Output),
         _ => {}
     }
 }
@@ -240,7 +240,7 @@ fn set_prefix(prefix: &mut TypePrefix, kind: TokenKind) {
 /// Gives the components of a clause its constraint, and its description and annotation to those without one.
 fn constrain(
     elements: &mut [Element],
-    constraint: &Constraint,
+    constraint: &ConstrainingClause,
     description: Option<&str>,
     annotation: Option<&Modification>,
 ) {

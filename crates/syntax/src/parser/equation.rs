@@ -1,15 +1,15 @@
 //! Equations, and the blocks `if`, `for` and `when` that equations and statements share.
 
-use super::{Open, OpenKind, Parse, Parser, Stop, expr, modification};
-use crate::ast::{BinaryOp, Equation, EquationKind, Expr, ExprKind, Iterator};
+use super::{OpenBlock, OpenBlockKind, ParseAbort, ParseResult, Parser, expr, modification};
+use crate::ast::{BinaryOp, Equation, EquationKind, Expr, ExprKind, ForIndex};
 use crate::diag::Span;
 use crate::token::TokenKind;
 
 /// Conditions with what they guard.
-pub(super) type Branches<T> = Vec<(Expr, Vec<T>)>;
+pub(super) type ConditionalBranches<T> = Vec<(Expr, Vec<T>)>;
 
 /// One equation, without its semicolon.
-pub(super) fn equation(p: &mut Parser<'_>) -> Parse<Equation> {
+pub(super) fn equation(p: &mut Parser<'_>) -> ParseResult<Equation> {
     let start = p.span();
     let kind = p.nested(|p| match p.kind() {
         TokenKind::If => if_equation(p),
@@ -23,18 +23,18 @@ pub(super) fn equation(p: &mut Parser<'_>) -> Parse<Equation> {
     Ok(Equation { kind, description, span })
 }
 
-fn if_equation(p: &mut Parser<'_>) -> Parse<EquationKind> {
+fn if_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let (branches, otherwise) = if_block(p, equation)?;
     Ok(EquationKind::If { branches, otherwise })
 }
 
-fn for_equation(p: &mut Parser<'_>) -> Parse<EquationKind> {
+fn for_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let (iterators, body) = for_block(p, equation)?;
     Ok(EquationKind::For { iterators, body })
 }
 
 /// `a = b` or a call.
-fn plain_equation(p: &mut Parser<'_>) -> Parse<EquationKind> {
+fn plain_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let left = expr::simple_expression(p)?;
     match p.kind() {
         TokenKind::Equal => p.bump(),
@@ -48,7 +48,7 @@ fn plain_equation(p: &mut Parser<'_>) -> Parse<EquationKind> {
     Ok(EquationKind::Equal(left, expr::expression(p)?))
 }
 
-fn equation_without_sign(p: &mut Parser<'_>, left: Expr) -> Parse<EquationKind> {
+fn equation_without_sign(p: &mut Parser<'_>, left: Expr) -> ParseResult<EquationKind> {
     match left.kind {
         ExprKind::Call { .. } => Ok(EquationKind::Call(left)),
         ExprKind::Binary(BinaryOp::Eq, a, b) if !is_bracketed(left.span, a.span) => {
@@ -92,7 +92,7 @@ pub(super) fn arrow(p: &Parser<'_>, expr: &Expr) -> Option<Span> {
     sign.starts_with("<-").then_some(Span { start, end: start + 2, ..left.span })
 }
 
-pub(super) fn blame_arrow(p: &mut Parser<'_>, arrow: Span, due: &str, rule: &str) -> Stop {
+pub(super) fn blame_arrow(p: &mut Parser<'_>, arrow: Span, due: &str, rule: &str) -> ParseAbort {
     let help = format!("`<-` is read as \"less than minus\"; {rule}");
     p.slip_at(arrow, format!("expected `{due}`, found `<-`"), &format!("expected `{due}`"), help)
 }
@@ -100,8 +100,11 @@ pub(super) fn blame_arrow(p: &mut Parser<'_>, arrow: Span, due: &str, rule: &str
 // Blocks. The cursor is on the first keyword.
 
 /// `if ... then ... elseif ... else ... end if`.
-pub(super) fn if_block<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> Parse<T>) -> Parse<(Branches<T>, Vec<T>)> {
-    open_block(p, OpenKind::If);
+pub(super) fn if_block<T>(
+    p: &mut Parser<'_>,
+    item: fn(&mut Parser<'_>) -> ParseResult<T>,
+) -> ParseResult<(ConditionalBranches<T>, Vec<T>)> {
+    open_block(p, OpenBlockKind::If);
     let mut branches = vec![branch(p, item)];
     while p.at(TokenKind::Elseif) || p.at_misspelt(TokenKind::Elseif) {
         check_elseif(p);
@@ -150,8 +153,11 @@ fn note_else_if(p: &mut Parser<'_>) {
 }
 
 /// `when ... then ... elsewhen ... end when`.
-pub(super) fn when_block<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> Parse<T>) -> Parse<Branches<T>> {
-    open_block(p, OpenKind::When);
+pub(super) fn when_block<T>(
+    p: &mut Parser<'_>,
+    item: fn(&mut Parser<'_>) -> ParseResult<T>,
+) -> ParseResult<ConditionalBranches<T>> {
+    open_block(p, OpenBlockKind::When);
     let mut branches = vec![branch(p, item)];
     while p.at(TokenKind::Elsewhen) {
         branches.push(branch(p, item));
@@ -163,9 +169,9 @@ pub(super) fn when_block<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> Par
 /// `for i in 1:n loop ... end for`.
 pub(super) fn for_block<T>(
     p: &mut Parser<'_>,
-    item: fn(&mut Parser<'_>) -> Parse<T>,
-) -> Parse<(Vec<Iterator>, Vec<T>)> {
-    open_block(p, OpenKind::For);
+    item: fn(&mut Parser<'_>) -> ParseResult<T>,
+) -> ParseResult<(Vec<ForIndex>, Vec<T>)> {
+    open_block(p, OpenBlockKind::For);
     p.bump();
     let iterators = expr::iterators(p);
     header_end(p, iterators.is_ok(), TokenKind::Loop);
@@ -175,8 +181,11 @@ pub(super) fn for_block<T>(
 }
 
 /// `while c loop ... end while`.
-pub(super) fn while_block<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> Parse<T>) -> Parse<(Expr, Vec<T>)> {
-    open_block(p, OpenKind::While);
+pub(super) fn while_block<T>(
+    p: &mut Parser<'_>,
+    item: fn(&mut Parser<'_>) -> ParseResult<T>,
+) -> ParseResult<(Expr, Vec<T>)> {
+    open_block(p, OpenBlockKind::While);
     p.bump();
     let condition = condition(p, TokenKind::Loop);
     let body = p.list(item);
@@ -184,7 +193,7 @@ pub(super) fn while_block<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> Pa
     Ok((condition, body))
 }
 
-fn branch<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> Parse<T>) -> (Expr, Vec<T>) {
+fn branch<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> ParseResult<T>) -> (Expr, Vec<T>) {
     p.bump();
     let condition = condition(p, TokenKind::Then);
     (condition, p.list(item))
@@ -228,8 +237,8 @@ fn skip_header(p: &mut Parser<'_>, keyword: TokenKind) {
 
 // Ends of blocks.
 
-fn open_block(p: &mut Parser<'_>, kind: OpenKind) {
-    p.open.push(Open { kind, span: p.span(), else_if: None });
+fn open_block(p: &mut Parser<'_>, kind: OpenBlockKind) {
+    p.open.push(OpenBlock { kind, span: p.span(), else_if: None });
 }
 
 /// `end if` and the like; reports what stands there instead.
@@ -260,10 +269,10 @@ fn close_block(p: &mut Parser<'_>, keyword: TokenKind) {
 fn closes_something_else(p: &Parser<'_>, word: TokenKind) -> bool {
     let is_open = |kind| p.open.iter().any(|open| open.kind == kind);
     match word {
-        TokenKind::If => is_open(OpenKind::If),
-        TokenKind::For => is_open(OpenKind::For),
-        TokenKind::While => is_open(OpenKind::While),
-        TokenKind::When => is_open(OpenKind::When),
+        TokenKind::If => is_open(OpenBlockKind::If),
+        TokenKind::For => is_open(OpenBlockKind::For),
+        TokenKind::While => is_open(OpenBlockKind::While),
+        TokenKind::When => is_open(OpenBlockKind::When),
         TokenKind::Semicolon => false,
         _ => true,
     }

@@ -1,12 +1,12 @@
 //! Expressions by recursive descent, but for what stands between operators.
 
-use super::{Parse, Parser, operator};
-use crate::ast::{Expr, ExprKind, Ident, Iterator, Path, Reference, ReferencePart, Subscript};
+use super::{ParseResult, Parser, operator};
+use crate::ast::{ComponentReference, Expr, ExprKind, ForIndex, Ident, Path, ReferencePart, Subscript};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::token::TokenKind;
 
 /// Positional and named arguments of a call.
-type Arguments = (Vec<Expr>, Vec<(Ident, Expr)>);
+type ArgumentLists = (Vec<Expr>, Vec<(Ident, Expr)>);
 
 /// An expression that is the whole text.
 pub fn whole_expression(p: &mut Parser<'_>) -> Option<Expr> {
@@ -18,7 +18,7 @@ pub fn whole_expression(p: &mut Parser<'_>) -> Option<Expr> {
 }
 
 /// Any expression, if-expressions and ranges included.
-pub(super) fn expression(p: &mut Parser<'_>) -> Parse<Expr> {
+pub(super) fn expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let outer = std::mem::take(&mut p.height);
     let result = p.nested(|p| match p.kind() {
         TokenKind::If => if_expression(p),
@@ -29,11 +29,11 @@ pub(super) fn expression(p: &mut Parser<'_>) -> Parse<Expr> {
 }
 
 /// An expression that does not begin with `if`, as on the left of an equation.
-pub(super) fn simple_expression(p: &mut Parser<'_>) -> Parse<Expr> {
+pub(super) fn simple_expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     p.nested(range_or_value)
 }
 
-fn range_or_value(p: &mut Parser<'_>) -> Parse<Expr> {
+fn range_or_value(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let from = operator::operators(p)?;
     if !p.eat(TokenKind::Colon) {
         return Ok(from);
@@ -45,7 +45,7 @@ fn range_or_value(p: &mut Parser<'_>) -> Parse<Expr> {
     Ok(Expr { kind: ExprKind::Range { from: Box::new(from), step, to: Box::new(to) }, span })
 }
 
-fn if_expression(p: &mut Parser<'_>) -> Parse<Expr> {
+fn if_expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     let mut branches = Vec::new();
     p.bump();
@@ -65,7 +65,7 @@ fn if_expression(p: &mut Parser<'_>) -> Parse<Expr> {
     Ok(Expr { kind: ExprKind::If { branches, otherwise }, span: p.since(start) })
 }
 
-fn expect_then(p: &mut Parser<'_>) -> Parse<()> {
+fn expect_then(p: &mut Parser<'_>) -> ParseResult<()> {
     if p.eat(TokenKind::Then) {
         return Ok(());
     }
@@ -75,7 +75,7 @@ fn expect_then(p: &mut Parser<'_>) -> Parse<()> {
 
 // Operands of operators.
 
-pub(super) fn primary(p: &mut Parser<'_>) -> Parse<Expr> {
+pub(super) fn primary(p: &mut Parser<'_>) -> ParseResult<Expr> {
     p.height = 0;
     let span = p.span();
     let kind = match p.kind() {
@@ -153,7 +153,7 @@ fn unknown_escape(p: &mut Parser<'_>, escaped: char, start: u32) {
 }
 
 /// `(a)`, `(a)[i]` or a list of outputs.
-fn bracketed(p: &mut Parser<'_>) -> Parse<Expr> {
+fn bracketed(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     let mut items = output_list(p)?;
     let span = p.since(start);
@@ -172,7 +172,7 @@ fn bracketed(p: &mut Parser<'_>) -> Parse<Expr> {
 }
 
 /// `(a, , c)`; `()` gives no item.
-pub(super) fn output_list(p: &mut Parser<'_>) -> Parse<Vec<Option<Expr>>> {
+pub(super) fn output_list(p: &mut Parser<'_>) -> ParseResult<Vec<Option<Expr>>> {
     let opened = p.span();
     p.bump();
     let mut items = Vec::new();
@@ -191,7 +191,7 @@ pub(super) fn output_list(p: &mut Parser<'_>) -> Parse<Vec<Option<Expr>>> {
 }
 
 /// `{a, b}` or `{a for i in 1:n}`.
-fn array(p: &mut Parser<'_>) -> Parse<Expr> {
+fn array(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let opened = p.span();
     p.bump();
     if p.at(TokenKind::RightBrace) {
@@ -213,7 +213,7 @@ fn array(p: &mut Parser<'_>) -> Parse<Expr> {
 }
 
 /// `[a, b; c, d]`.
-fn matrix(p: &mut Parser<'_>) -> Parse<Expr> {
+fn matrix(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let opened = p.span();
     p.bump();
     let mut rows = Vec::new();
@@ -241,7 +241,7 @@ pub(super) fn looks_like_equation(p: &Parser<'_>) -> bool {
 }
 
 /// Expressions separated by commas, at least one.
-pub(super) fn expressions(p: &mut Parser<'_>) -> Parse<Vec<Expr>> {
+pub(super) fn expressions(p: &mut Parser<'_>) -> ParseResult<Vec<Expr>> {
     let mut items = vec![expression(p)?];
     while p.eat(TokenKind::Comma) {
         items.push(expression(p)?);
@@ -251,7 +251,7 @@ pub(super) fn expressions(p: &mut Parser<'_>) -> Parse<Vec<Expr>> {
 
 // References and calls.
 
-fn reference_or_call(p: &mut Parser<'_>) -> Parse<Expr> {
+fn reference_or_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let reference = reference(p, "an expression")?;
     if p.at(TokenKind::LeftParen) {
         return call(p, reference);
@@ -261,42 +261,42 @@ fn reference_or_call(p: &mut Parser<'_>) -> Parse<Expr> {
 }
 
 /// `der(...)`, `initial()`, `pure(...)`.
-fn keyword_call(p: &mut Parser<'_>) -> Parse<Expr> {
+fn keyword_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
     if p.peek_kind(1) != TokenKind::LeftParen {
         return Err(p.unexpected("an expression"));
     }
     let name = p.ident_of(p.token());
     p.bump();
     let parts = vec![ReferencePart { name, subscripts: Vec::new() }];
-    call(p, Reference { global: false, parts, span: name.span })
+    call(p, ComponentReference { global: false, parts, span: name.span })
 }
 
 /// `[.] a[i].b`.
-pub(super) fn reference(p: &mut Parser<'_>, what: &str) -> Parse<Reference> {
+pub(super) fn reference(p: &mut Parser<'_>, what: &str) -> ParseResult<ComponentReference> {
     let start = p.span();
     let global = p.eat(TokenKind::Dot);
     let mut parts = vec![reference_part(p, what)?];
     while p.eat(TokenKind::Dot) {
         parts.push(reference_part(p, "a name after `.`")?);
     }
-    Ok(Reference { global, parts, span: p.since(start) })
+    Ok(ComponentReference { global, parts, span: p.since(start) })
 }
 
-fn reference_part(p: &mut Parser<'_>, what: &str) -> Parse<ReferencePart> {
+fn reference_part(p: &mut Parser<'_>, what: &str) -> ParseResult<ReferencePart> {
     let name = p.ident(what)?;
     let subscripts = if p.at(TokenKind::LeftBracket) { subscripts(p)? } else { Vec::new() };
     Ok(ReferencePart { name, subscripts })
 }
 
 /// `[i, :, 1:end]`.
-pub(super) fn subscripts(p: &mut Parser<'_>) -> Parse<Vec<Subscript>> {
+pub(super) fn subscripts(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     p.subscripts += 1;
     let result = subscript_list(p);
     p.subscripts -= 1;
     result
 }
 
-fn subscript_list(p: &mut Parser<'_>) -> Parse<Vec<Subscript>> {
+fn subscript_list(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     let opened = p.span();
     p.bump();
     let mut items = Vec::new();
@@ -313,7 +313,7 @@ fn subscript_list(p: &mut Parser<'_>) -> Parse<Vec<Subscript>> {
 }
 
 /// The call of a function whose opening bracket is at the cursor.
-fn call(p: &mut Parser<'_>, function: Reference) -> Parse<Expr> {
+fn call(p: &mut Parser<'_>, function: ComponentReference) -> ParseResult<Expr> {
     let (start, opened) = (function.span, p.span());
     p.bump();
     let (mut args, named) = arguments(p)?;
@@ -328,7 +328,7 @@ fn call(p: &mut Parser<'_>, function: Reference) -> Parse<Expr> {
     Ok(Expr { kind, span: p.since(start) })
 }
 
-fn arguments(p: &mut Parser<'_>) -> Parse<Arguments> {
+fn arguments(p: &mut Parser<'_>) -> ParseResult<ArgumentLists> {
     let (mut args, mut named) = (Vec::new(), Vec::new());
     if p.at(TokenKind::RightParen) {
         return Ok((args, named));
@@ -353,18 +353,18 @@ fn at_named(p: &Parser<'_>) -> bool {
     p.at(TokenKind::Ident) && p.peek_kind(1) == TokenKind::Equal
 }
 
-fn named_argument(p: &mut Parser<'_>) -> Parse<(Ident, Expr)> {
+fn named_argument(p: &mut Parser<'_>) -> ParseResult<(Ident, Expr)> {
     let name = p.ident("the name of an argument")?;
     p.expect(TokenKind::Equal)?;
     Ok((name, argument(p)?))
 }
 
-fn argument(p: &mut Parser<'_>) -> Parse<Expr> {
+fn argument(p: &mut Parser<'_>) -> ParseResult<Expr> {
     if p.at(TokenKind::Function) { p.nested(partial_application) } else { expression(p) }
 }
 
 /// `function f(a = 1)`.
-fn partial_application(p: &mut Parser<'_>) -> Parse<Expr> {
+fn partial_application(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     p.bump();
     let function: Path = p.path("the name of a function")?;
@@ -380,13 +380,13 @@ fn partial_application(p: &mut Parser<'_>) -> Parse<Expr> {
     Ok(Expr { kind: ExprKind::PartialApplication { function, named }, span: p.since(start) })
 }
 
-fn comprehension_iterators(p: &mut Parser<'_>) -> Parse<Vec<Iterator>> {
+fn comprehension_iterators(p: &mut Parser<'_>) -> ParseResult<Vec<ForIndex>> {
     p.bump();
     iterators(p)
 }
 
 /// `i in 1:n, j`.
-pub(super) fn iterators(p: &mut Parser<'_>) -> Parse<Vec<Iterator>> {
+pub(super) fn iterators(p: &mut Parser<'_>) -> ParseResult<Vec<ForIndex>> {
     let mut iterators = Vec::new();
     loop {
         let name = p.ident("the name of a loop variable")?;
@@ -395,7 +395,7 @@ pub(super) fn iterators(p: &mut Parser<'_>) -> Parse<Vec<Iterator>> {
         }
         let has_range = p.eat(TokenKind::In) || p.eat(TokenKind::Equal);
         let range = if has_range { Some(expression(p)?) } else { None };
-        iterators.push(Iterator { name, range });
+        iterators.push(ForIndex { name, range });
         if !p.eat(TokenKind::Comma) {
             return Ok(iterators);
         }

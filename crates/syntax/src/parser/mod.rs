@@ -1,6 +1,6 @@
 //! The cursor over the tokens, and how the parser goes on after an error.
 //!
-//! A function that cannot go on has reported an error and returns [`Stop`]; lists of elements, equations, statements
+//! A function that cannot go on has reported an error and returns [`ParseAbort`]; lists of elements, equations, statements
 //! and arguments catch it, skip to where the next item may begin, and go on.
 
 mod body;
@@ -13,12 +13,12 @@ mod operator;
 mod report;
 mod statement;
 
-use super::ast::{Ident, Path, Reference};
-use super::lexer::{Lexed, lex};
+use super::ast::{ComponentReference, Ident, Path};
+use super::lexer::{TokenStream, lex};
 use super::symbol::Symbol;
 use super::token::{Token, TokenKind};
 use crate::diag::{Code, Diagnostic, FileId, Span};
-use operator::{Operand, Pending};
+use operator::{ParserOperand, PendingOperator};
 
 /// Deepest nesting of brackets, blocks and classes.
 const MAX_DEPTH: u32 = 200;
@@ -28,14 +28,14 @@ const MAX_HEIGHT: u32 = 500;
 
 /// An error was reported; the item at hand is given up.
 #[derive(Debug)]
-pub(super) struct Stop;
+pub(super) struct ParseAbort;
 
 /// A piece of the tree, or given up.
-pub(super) type Parse<T> = Result<T, Stop>;
+pub(super) type ParseResult<T> = Result<T, ParseAbort>;
 
 /// What waits for its `end`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum OpenKind {
+enum OpenBlockKind {
     Class(Symbol),
     If,
     For,
@@ -45,8 +45,8 @@ enum OpenKind {
 
 /// An open block or class, for messages about the one that is not closed.
 #[derive(Clone, Copy, Debug)]
-struct Open {
-    kind: OpenKind,
+struct OpenBlock {
+    kind: OpenBlockKind,
     span: Span,
     /// The place of an `else if` in it, a likely slip for `elseif`.
     else_if: Option<Span>,
@@ -64,7 +64,7 @@ pub(super) struct Parser<'a> {
     blamed: Option<usize>,
     /// Set after a guessed semicolon until the next one: what lies between may be the rest of the item before.
     guessed: bool,
-    /// True when the end of the text means nothing (see [`Lexed::truncated`]).
+    /// True when the end of the text means nothing (see [`TokenStream::truncated`]).
     truncated: bool,
     /// Set when an `end` was missing or wrong in the class at hand: others that do not fit follow from it.
     misnested: bool,
@@ -75,16 +75,16 @@ pub(super) struct Parser<'a> {
     height: u32,
     /// How many subscripts we are in, where `end` is a value.
     subscripts: u32,
-    open: Vec<Open>,
+    open: Vec<OpenBlock>,
     /// Operators and operands of the expressions at hand.
-    pending: Vec<Pending>,
-    operands: Vec<Operand>,
+    pending: Vec<PendingOperator>,
+    operands: Vec<ParserOperand>,
 }
 
 impl<'a> Parser<'a> {
     /// A parser at the first token of a text of less than 4 GiB.
     pub fn new(file: FileId, text: &'a str) -> Self {
-        let Lexed { tokens, diagnostics, truncated } = lex(file, text);
+        let TokenStream { tokens, diagnostics, truncated } = lex(file, text);
         Parser {
             text,
             file,
@@ -147,7 +147,7 @@ impl<'a> Parser<'a> {
         found
     }
 
-    fn expect(&mut self, kind: TokenKind) -> Parse<Span> {
+    fn expect(&mut self, kind: TokenKind) -> ParseResult<Span> {
         let span = self.span();
         if self.eat(kind) {
             return Ok(span);
@@ -195,7 +195,7 @@ impl<'a> Parser<'a> {
     }
 
     /// A name; `what` says in a message whose.
-    fn ident(&mut self, what: &str) -> Parse<Ident> {
+    fn ident(&mut self, what: &str) -> ParseResult<Ident> {
         let token = self.token();
         if token.kind != TokenKind::Ident && !self.keyword_as_name(what) {
             return Err(self.unexpected(what));
@@ -205,7 +205,7 @@ impl<'a> Parser<'a> {
     }
 
     /// `[.] a.b.c`.
-    fn path(&mut self, what: &str) -> Parse<Path> {
+    fn path(&mut self, what: &str) -> ParseResult<Path> {
         let start = self.span();
         let global = self.eat(TokenKind::Dot);
         let mut parts = vec![self.ident(what)?];
@@ -219,7 +219,7 @@ impl<'a> Parser<'a> {
     // Nesting.
 
     /// Runs a part one level deeper, unless that is too deep.
-    fn nested<T>(&mut self, part: impl FnOnce(&mut Self) -> Parse<T>) -> Parse<T> {
+    fn nested<T>(&mut self, part: impl FnOnce(&mut Self) -> ParseResult<T>) -> ParseResult<T> {
         if self.depth >= MAX_DEPTH {
             return Err(self.too_deep(&format!("the text is nested more than {MAX_DEPTH} levels deep")));
         }
@@ -229,13 +229,13 @@ impl<'a> Parser<'a> {
         result
     }
 
-    fn too_deep(&mut self, message: &str) -> Stop {
+    fn too_deep(&mut self, message: &str) -> ParseAbort {
         let diagnostic = Diagnostic::new(Code::TooDeep, message).at(self.span(), "the limit is reached here");
         self.blamed = None;
         self.report(diagnostic);
         self.halted = true;
         self.at = self.tokens.len() - 1;
-        Stop
+        ParseAbort
     }
 
     // Going on after an error.
@@ -275,7 +275,7 @@ impl<'a> Parser<'a> {
     }
 
     fn is_open_class(&self, name: &str) -> bool {
-        self.open.iter().any(|open| matches!(open.kind, OpenKind::Class(class) if class.as_str() == name))
+        self.open.iter().any(|open| matches!(open.kind, OpenBlockKind::Class(class) if class.as_str() == name))
     }
 
     /// A class keyword with what follows it in a class; `function` may also stand in an argument, `pure` in a call.
@@ -322,7 +322,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Parses items up to `end`, the next section or the like; one that fails is skipped.
-    fn list<T>(&mut self, item: fn(&mut Self) -> Parse<T>) -> Vec<T> {
+    fn list<T>(&mut self, item: fn(&mut Self) -> ParseResult<T>) -> Vec<T> {
         let mut items = Vec::new();
         while !self.is_list_end() {
             let before = self.at;
@@ -336,7 +336,7 @@ impl<'a> Parser<'a> {
                         self.recover();
                     }
                 }
-                Err(Stop) => self.recover(),
+                Err(ParseAbort) => self.recover(),
             }
             if self.at == before {
                 self.bump();
@@ -353,7 +353,7 @@ impl<'a> Parser<'a> {
     }
 
     /// The semicolon after an element, equation or statement.
-    fn semicolon(&mut self) -> Parse<()> {
+    fn semicolon(&mut self) -> ParseResult<()> {
         if self.eat(TokenKind::Semicolon) {
             self.guessed = false;
             return Ok(());
@@ -400,7 +400,7 @@ pub(super) fn whole_path(file: FileId, text: &str) -> Option<Path> {
 }
 
 /// The whole of a reference such as `a.b[2].c`, or nothing if the text is anything else.
-pub(super) fn whole_reference(file: FileId, text: &str) -> Option<Reference> {
+pub(super) fn whole_reference(file: FileId, text: &str) -> Option<ComponentReference> {
     let mut parser = Parser::new(file, text);
     let reference = expr::reference(&mut parser, "a name").ok()?;
     (parser.at(TokenKind::Eof) && parser.diagnostics.is_empty()).then_some(reference)

@@ -1,14 +1,15 @@
 //! Modifications: `(start = 1, redeclare model M = N) = 3`, annotations and descriptions.
 
-use super::{Parse, Parser, class, element, expr, is_class_keyword};
+use super::{ParseResult, Parser, class, element, expr, is_class_keyword};
 use crate::ast::{
-    Argument, ArgumentKind, Class, ClassBody, Component, Constraint, Expr, ExprKind, Modification, Prefixes,
+    Class, ClassBody, ComponentDeclaration, ConstrainingClause, ElementPrefixes, Expr, ExprKind, Modification,
+    ModificationArgument, ModificationArgumentKind,
 };
 use crate::token::TokenKind;
 
 /// Where a modification stands decides what it may hold.
 #[derive(Clone, Copy, PartialEq)]
-pub(super) enum Place {
+pub(super) enum ModificationContext {
     /// After `extends B`, where `break` takes elements out.
     Extends,
     /// Everywhere else.
@@ -16,9 +17,9 @@ pub(super) enum Place {
 }
 
 /// `(...) = value`, `= value` or `:= value`, if there.
-pub(super) fn modification(p: &mut Parser<'_>) -> Parse<Option<Modification>> {
+pub(super) fn modification(p: &mut Parser<'_>) -> ParseResult<Option<Modification>> {
     let with_arguments = p.at(TokenKind::LeftParen);
-    let arguments = if with_arguments { class_modification(p, Place::Elsewhere)? } else { Vec::new() };
+    let arguments = if with_arguments { class_modification(p, ModificationContext::Elsewhere)? } else { Vec::new() };
     let has_value = match p.kind() {
         TokenKind::Equal | TokenKind::Assign => true,
         TokenKind::EqualEqual => {
@@ -38,7 +39,10 @@ pub(super) fn modification(p: &mut Parser<'_>) -> Parse<Option<Modification>> {
 }
 
 /// `(argument, ...)`; an argument that fails is left out.
-pub(super) fn class_modification(p: &mut Parser<'_>, place: Place) -> Parse<Vec<Argument>> {
+pub(super) fn class_modification(
+    p: &mut Parser<'_>,
+    place: ModificationContext,
+) -> ParseResult<Vec<ModificationArgument>> {
     let opened = p.span();
     p.bump();
     let mut arguments = Vec::new();
@@ -52,16 +56,16 @@ pub(super) fn class_modification(p: &mut Parser<'_>, place: Place) -> Parse<Vec<
     Ok(arguments)
 }
 
-fn argument_of_modification(p: &mut Parser<'_>, place: Place) -> Parse<Argument> {
+fn argument_of_modification(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<ModificationArgument> {
     // Counts twice, as it takes more stack than other nesting.
     p.nested(|p| p.nested(|p| bare_argument(p, place)))
 }
 
-fn bare_argument(p: &mut Parser<'_>, place: Place) -> Parse<Argument> {
+fn bare_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<ModificationArgument> {
     let start = p.span();
     if p.at(TokenKind::Break) {
         let kind = break_argument(p, place)?;
-        return Ok(Argument { each: false, final_: false, kind, span: p.since(start) });
+        return Ok(ModificationArgument { each: false, final_: false, kind, span: p.since(start) });
     }
     let mut redeclare = p.eat(TokenKind::Redeclare);
     let each = p.eat(TokenKind::Each);
@@ -69,11 +73,11 @@ fn bare_argument(p: &mut Parser<'_>, place: Place) -> Parse<Argument> {
     redeclare |= late_redeclare(p);
     let replaceable = p.eat(TokenKind::Replaceable);
     let kind = if redeclare || replaceable {
-        redeclaration(p, Prefixes { redeclare, replaceable, ..Prefixes::default() })?
+        redeclaration(p, ElementPrefixes { redeclare, replaceable, ..ElementPrefixes::default() })?
     } else {
         element_modification(p)?
     };
-    Ok(Argument { each, final_, kind, span: p.since(start) })
+    Ok(ModificationArgument { each, final_, kind, span: p.since(start) })
 }
 
 /// Reports `each redeclare`, where `redeclare` comes too late.
@@ -89,21 +93,21 @@ fn late_redeclare(p: &mut Parser<'_>) -> bool {
 }
 
 /// `break name` or `break connect(a, b)`.
-fn break_argument(p: &mut Parser<'_>, place: Place) -> Parse<ArgumentKind> {
-    if place == Place::Elsewhere {
+fn break_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<ModificationArgumentKind> {
+    if place == ModificationContext::Elsewhere {
         let help = "`break` takes an inherited element out: `extends B(break c)`";
         return Err(p.unexpected_with("a modifier", Some(help)));
     }
     p.bump();
     if !p.at(TokenKind::Connect) {
-        return Ok(ArgumentKind::BreakComponent(p.ident("a name or `connect`")?));
+        return Ok(ModificationArgumentKind::BreakComponent(p.ident("a name or `connect`")?));
     }
     let (a, b) = connect_arguments(p)?;
-    Ok(ArgumentKind::BreakConnect(Box::new(a), Box::new(b)))
+    Ok(ModificationArgumentKind::BreakConnect(Box::new(a), Box::new(b)))
 }
 
 /// `(a, b)` after `connect`, which is at the cursor.
-pub(super) fn connect_arguments(p: &mut Parser<'_>) -> Parse<(Expr, Expr)> {
+pub(super) fn connect_arguments(p: &mut Parser<'_>) -> ParseResult<(Expr, Expr)> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;
     let a = connector(p)?;
@@ -113,13 +117,13 @@ pub(super) fn connect_arguments(p: &mut Parser<'_>) -> Parse<(Expr, Expr)> {
     Ok((a, b))
 }
 
-fn connector(p: &mut Parser<'_>) -> Parse<Expr> {
+fn connector(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let reference = expr::reference(p, "the name of a connector")?;
     let span = reference.span;
     Ok(Expr { kind: ExprKind::Reference(reference), span })
 }
 
-fn element_modification(p: &mut Parser<'_>) -> Parse<ArgumentKind> {
+fn element_modification(p: &mut Parser<'_>) -> ParseResult<ModificationArgumentKind> {
     let path = p.path("the name of an attribute or element")?;
     if p.at(TokenKind::LeftBracket) {
         let help = "a modifier holds for the whole array: give all values at once, as in `x(start = {1, 2})`";
@@ -130,18 +134,18 @@ fn element_modification(p: &mut Parser<'_>) -> Parse<ArgumentKind> {
     if modification.is_none() && !ends {
         return Err(p.unexpected("`=` or `(`"));
     }
-    Ok(ArgumentKind::Modify { path, modification, description: description(p) })
+    Ok(ModificationArgumentKind::Modify { path, modification, description: description(p) })
 }
 
 /// What stands after `redeclare` or `replaceable` in a modification.
-fn redeclaration(p: &mut Parser<'_>, prefixes: Prefixes) -> Parse<ArgumentKind> {
+fn redeclaration(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<ModificationArgumentKind> {
     if is_class_keyword(p.kind()) {
-        return Ok(ArgumentKind::Class(redeclared_class(p, prefixes)?));
+        return Ok(ModificationArgumentKind::Class(redeclared_class(p, prefixes)?));
     }
-    Ok(ArgumentKind::Component(redeclared_component(p, prefixes)?))
+    Ok(ModificationArgumentKind::Component(redeclared_component(p, prefixes)?))
 }
 
-fn redeclared_class(p: &mut Parser<'_>, prefixes: Prefixes) -> Parse<Box<Class>> {
+fn redeclared_class(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let start = p.token();
     let mut class = class::class(p, prefixes)?;
     if matches!(class.body, ClassBody::Long(_)) {
@@ -156,7 +160,7 @@ fn redeclared_class(p: &mut Parser<'_>, prefixes: Prefixes) -> Parse<Box<Class>>
     Ok(class)
 }
 
-fn redeclared_component(p: &mut Parser<'_>, prefixes: Prefixes) -> Parse<Box<Component>> {
+fn redeclared_component(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<ComponentDeclaration>> {
     let prefix = element::type_prefix(p);
     let class = p.path("a type")?;
     let of_type = element::optional_subscripts(p)?;
@@ -167,7 +171,7 @@ fn redeclared_component(p: &mut Parser<'_>, prefixes: Prefixes) -> Parse<Box<Com
     let (description, annotation) = comment(p)?;
     let constraint = if prefixes.replaceable { constraint(p)? } else { None };
     let condition = None;
-    Ok(Box::new(Component {
+    Ok(Box::new(ComponentDeclaration {
         name,
         prefixes,
         prefix,
@@ -182,16 +186,19 @@ fn redeclared_component(p: &mut Parser<'_>, prefixes: Prefixes) -> Parse<Box<Com
 }
 
 /// `constrainedby T(...)`, if there.
-pub(super) fn constraint(p: &mut Parser<'_>) -> Parse<Option<Constraint>> {
+pub(super) fn constraint(p: &mut Parser<'_>) -> ParseResult<Option<ConstrainingClause>> {
     if !p.eat(TokenKind::Constrainedby) {
         return Ok(None);
     }
     let path = p.path("a type")?;
-    Ok(Some(Constraint { path, modification: optional_class_modification(p, Place::Elsewhere)? }))
+    Ok(Some(ConstrainingClause { path, modification: optional_class_modification(p, ModificationContext::Elsewhere)? }))
 }
 
 /// `(...)` without a value, if there.
-pub(super) fn optional_class_modification(p: &mut Parser<'_>, place: Place) -> Parse<Option<Modification>> {
+pub(super) fn optional_class_modification(
+    p: &mut Parser<'_>,
+    place: ModificationContext,
+) -> ParseResult<Option<Modification>> {
     if !p.at(TokenKind::LeftParen) {
         return Ok(None);
     }
@@ -216,17 +223,17 @@ pub(super) fn description(p: &mut Parser<'_>) -> Option<Box<str>> {
 }
 
 /// `annotation(...)`, if there.
-pub(super) fn annotation(p: &mut Parser<'_>) -> Parse<Option<Modification>> {
+pub(super) fn annotation(p: &mut Parser<'_>) -> ParseResult<Option<Modification>> {
     if !p.eat(TokenKind::Annotation) {
         return Ok(None);
     }
     if !p.at(TokenKind::LeftParen) {
         return Err(p.unexpected("`(`"));
     }
-    optional_class_modification(p, Place::Elsewhere)
+    optional_class_modification(p, ModificationContext::Elsewhere)
 }
 
 /// A description and an annotation, if there.
-pub(super) fn comment(p: &mut Parser<'_>) -> Parse<(Option<Box<str>>, Option<Modification>)> {
+pub(super) fn comment(p: &mut Parser<'_>) -> ParseResult<(Option<Box<str>>, Option<Modification>)> {
     Ok((description(p), annotation(p)?))
 }

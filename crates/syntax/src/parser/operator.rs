@@ -3,7 +3,7 @@
 //! Operators wait on a stack of the parser's own instead of the call stack, which deep brackets would exhaust.
 
 use super::report::shortened;
-use super::{MAX_HEIGHT, Parse, Parser, Stop, expr};
+use super::{MAX_HEIGHT, ParseAbort, ParseResult, Parser, expr};
 use crate::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
 use crate::diag::Span;
 use crate::token::TokenKind;
@@ -19,7 +19,7 @@ const POWER: u8 = 7;
 
 /// An operator whose right operand is not complete.
 #[derive(Clone, Copy)]
-pub(super) enum Pending {
+pub(super) enum PendingOperator {
     Prefix {
         op: UnaryOp,
         sign: Span,
@@ -30,10 +30,10 @@ pub(super) enum Pending {
 }
 
 /// An operand with the height of its tree.
-pub(super) type Operand = (Expr, u32);
+pub(super) type ParserOperand = (Expr, u32);
 
 /// Operands and operators as far as they go.
-pub(super) fn operators(p: &mut Parser<'_>) -> Parse<Expr> {
+pub(super) fn operators(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let (pending, operands) = (p.pending.len(), p.operands.len());
     let result = operators_above(p, pending);
     if result.is_err() {
@@ -43,7 +43,7 @@ pub(super) fn operators(p: &mut Parser<'_>) -> Parse<Expr> {
     result
 }
 
-fn operators_above(p: &mut Parser<'_>, base: usize) -> Parse<Expr> {
+fn operators_above(p: &mut Parser<'_>, base: usize) -> ParseResult<Expr> {
     loop {
         prefixes_of_operand(p, base);
         let operand = expr::primary(p)?;
@@ -51,11 +51,11 @@ fn operators_above(p: &mut Parser<'_>, base: usize) -> Parse<Expr> {
         let Some((op, strength)) = infix(p.kind()) else { break };
         check_foreign(p);
         reduce(p, base, strength)?;
-        p.pending.push(Pending::Infix(op, strength));
+        p.pending.push(PendingOperator::Infix(op, strength));
         p.bump();
     }
     reduce(p, base, 0)?;
-    let (expr, height) = p.operands.pop().ok_or(Stop)?;
+    let (expr, height) = p.operands.pop().ok_or(ParseAbort)?;
     p.height = height;
     Ok(expr)
 }
@@ -66,23 +66,23 @@ fn prefixes_of_operand(p: &mut Parser<'_>, base: usize) {
             p.slip("expected `not`, found `!`", "not a Modelica operator", "write `not`");
         }
         let limit = if op == UnaryOp::Not { NOT } else { SUM };
-        let least = p.pending[base..].last().map_or(OR, Pending::least);
+        let least = p.pending[base..].last().map_or(OR, PendingOperator::least);
         let after = (least > limit).then(|| p.span_of(p.previous()));
-        p.pending.push(Pending::Prefix { op, sign: p.span(), after });
+        p.pending.push(PendingOperator::Prefix { op, sign: p.span(), after });
         p.bump();
     }
 }
 
 /// Completes the waiting operators that bind at least as strongly as the one that comes.
-fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> Parse<()> {
+fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> ParseResult<()> {
     while p.pending.len() > base
         && let Some(&top) = p.pending.last()
         && top.strength() >= strength
     {
         p.pending.pop();
         match top {
-            Pending::Prefix { op, sign, after } => complete_prefix(p, op, sign, after)?,
-            Pending::Infix(op, own) => {
+            PendingOperator::Prefix { op, sign, after } => complete_prefix(p, op, sign, after)?,
+            PendingOperator::Infix(op, own) => {
                 if own == strength && matches!(own, RELATION | POWER) {
                     blame_chain(p);
                 }
@@ -93,8 +93,8 @@ fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> Parse<()> {
     Ok(())
 }
 
-fn complete_prefix(p: &mut Parser<'_>, op: UnaryOp, sign: Span, after: Option<Span>) -> Parse<()> {
-    let (operand, height) = p.operands.pop().ok_or(Stop)?;
+fn complete_prefix(p: &mut Parser<'_>, op: UnaryOp, sign: Span, after: Option<Span>) -> ParseResult<()> {
+    let (operand, height) = p.operands.pop().ok_or(ParseAbort)?;
     if let Some(after) = after {
         blame_prefix(p, after, sign, operand.span);
     }
@@ -102,15 +102,15 @@ fn complete_prefix(p: &mut Parser<'_>, op: UnaryOp, sign: Span, after: Option<Sp
     push_operand(p, ExprKind::Unary(op, Box::new(operand)), span, height)
 }
 
-fn complete_infix(p: &mut Parser<'_>, op: BinaryOp) -> Parse<()> {
-    let (right, right_height) = p.operands.pop().ok_or(Stop)?;
-    let (left, left_height) = p.operands.pop().ok_or(Stop)?;
+fn complete_infix(p: &mut Parser<'_>, op: BinaryOp) -> ParseResult<()> {
+    let (right, right_height) = p.operands.pop().ok_or(ParseAbort)?;
+    let (left, left_height) = p.operands.pop().ok_or(ParseAbort)?;
     let span = left.span.to(right.span);
     let kind = ExprKind::Binary(op, Box::new(left), Box::new(right));
     push_operand(p, kind, span, left_height.max(right_height))
 }
 
-fn push_operand(p: &mut Parser<'_>, kind: ExprKind, span: Span, height: u32) -> Parse<()> {
+fn push_operand(p: &mut Parser<'_>, kind: ExprKind, span: Span, height: u32) -> ParseResult<()> {
     if height >= MAX_HEIGHT {
         return Err(p.too_deep(&format!("an expression with more than {MAX_HEIGHT} operators in a row")));
     }
@@ -154,22 +154,22 @@ fn blame_prefix(p: &mut Parser<'_>, before: Span, sign: Span, operand: Span) {
     p.slip_at(sign, message, "brackets are needed here", help);
 }
 
-impl Pending {
+impl PendingOperator {
     /// An operator that comes must bind more strongly to take the operand from this one.
     fn strength(&self) -> u8 {
         match self {
-            Pending::Prefix { op: UnaryOp::Not, .. } => NOT,
-            Pending::Prefix { .. } => SUM,
-            Pending::Infix(_, strength) => *strength,
+            PendingOperator::Prefix { op: UnaryOp::Not, .. } => NOT,
+            PendingOperator::Prefix { .. } => SUM,
+            PendingOperator::Infix(_, strength) => *strength,
         }
     }
 
     /// The least strength of what may follow.
     fn least(&self) -> u8 {
         match self {
-            Pending::Prefix { op: UnaryOp::Not, .. } => RELATION,
-            Pending::Prefix { .. } => PRODUCT,
-            Pending::Infix(_, strength) => strength + 1,
+            PendingOperator::Prefix { op: UnaryOp::Not, .. } => RELATION,
+            PendingOperator::Prefix { .. } => PRODUCT,
+            PendingOperator::Infix(_, strength) => strength + 1,
         }
     }
 }

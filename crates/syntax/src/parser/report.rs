@@ -1,6 +1,6 @@
 //! The messages of the parser: what was expected, what was found, and the slip it probably is.
 
-use super::{Open, OpenKind, Parse, Parser, Stop, expr};
+use super::{OpenBlock, OpenBlockKind, ParseAbort, ParseResult, Parser, expr};
 use crate::diag::{Code, Diagnostic, Span, nearest};
 use crate::token::{Token, TokenKind};
 
@@ -47,31 +47,31 @@ impl Parser<'_> {
         message: impl Into<String>,
         label: &str,
         help: impl Into<String>,
-    ) -> Stop {
+    ) -> ParseAbort {
         let diagnostic = Diagnostic::new(Code::Syntax, message).at(place, label).help(help);
         self.report(diagnostic);
-        Stop
+        ParseAbort
     }
 
     /// Reports "expected this, found the current token".
-    pub(super) fn unexpected(&mut self, expected: &str) -> Stop {
+    pub(super) fn unexpected(&mut self, expected: &str) -> ParseAbort {
         self.unexpected_with(expected, None)
     }
 
     /// The same with advice, unless the token itself explains what is wrong.
-    pub(super) fn unexpected_with(&mut self, expected: &str, help: Option<&str>) -> Stop {
+    pub(super) fn unexpected_with(&mut self, expected: &str, help: Option<&str>) -> ParseAbort {
         let mut diagnostic = self.expected_found(expected);
         let own = self.advice_on_token();
         if let Some(help) = own.or(help.map(str::to_owned)) {
             diagnostic = diagnostic.help(help);
         }
         self.report(diagnostic);
-        Stop
+        ParseAbort
     }
 
     /// The same, unless a semicolon was just guessed: then an operator was missing in truth.
-    pub(super) fn unexpected_in_item(&mut self, expected: &str, help: Option<&str>) -> Stop {
-        if self.guessed { Stop } else { self.unexpected_with(expected, help) }
+    pub(super) fn unexpected_in_item(&mut self, expected: &str, help: Option<&str>) -> ParseAbort {
+        if self.guessed { ParseAbort } else { self.unexpected_with(expected, help) }
     }
 
     fn expected_found(&self, expected: &str) -> Diagnostic {
@@ -113,8 +113,10 @@ impl Parser<'_> {
 
     /// A single `=` where a condition goes on.
     fn blames_comparison(&self) -> bool {
-        matches!(self.open.last().map(|open| open.kind), Some(OpenKind::If | OpenKind::When | OpenKind::While))
-            && !self.is_on_new_line()
+        matches!(
+            self.open.last().map(|open| open.kind),
+            Some(OpenBlockKind::If | OpenBlockKind::When | OpenBlockKind::While)
+        ) && !self.is_on_new_line()
     }
 
     /// Whether a keyword stands where a name should, as if it were one; then it is reported and taken for the name.
@@ -165,9 +167,9 @@ impl Parser<'_> {
     }
 
     /// Reports something at the top of a file that is no class, perhaps for a misspelt keyword.
-    pub(super) fn no_class(&mut self) -> Stop {
+    pub(super) fn no_class(&mut self) -> ParseAbort {
         if self.at(TokenKind::End) && !self.diagnostics.is_empty() {
-            return Stop;
+            return ParseAbort;
         }
         let near = nearest(self.word(self.token()), CLASS_WORDS.iter().copied());
         let help = near.map(|keyword| format!("did you mean `{keyword}`?"));
@@ -175,7 +177,7 @@ impl Parser<'_> {
     }
 
     /// What stands after a complete element, equation or statement on the same line.
-    pub(super) fn unexpected_after_item(&mut self) -> Stop {
+    pub(super) fn unexpected_after_item(&mut self) -> ParseAbort {
         use TokenKind as T;
         let expected = match self.previous().kind {
             T::String => "`;`",
@@ -200,7 +202,7 @@ impl Parser<'_> {
     }
 
     /// The closing bracket of what was opened at a place.
-    pub(super) fn close(&mut self, bracket: TokenKind, opened: Span, expected: &str) -> Parse<Span> {
+    pub(super) fn close(&mut self, bracket: TokenKind, opened: Span, expected: &str) -> ParseResult<Span> {
         let span = self.span();
         if self.eat(bracket) {
             return Ok(span);
@@ -216,7 +218,7 @@ impl Parser<'_> {
             .at(opened, "opened here")
             .at(span, format!("expected {expected} before this"));
         self.report(diagnostic);
-        Err(Stop)
+        Err(ParseAbort)
     }
 
     /// Whether a token can only stand outside the brackets we are in.
@@ -227,7 +229,7 @@ impl Parser<'_> {
     }
 
     /// Reports a class or block whose `end` is missing at the current token.
-    pub(super) fn unclosed(&mut self, open: Open) {
+    pub(super) fn unclosed(&mut self, open: OpenBlock) {
         let (what, closing) = open.words();
         let found = self.found_at_end();
         let message = format!("{what} is not closed: expected `{closing}`, found {found}");
@@ -254,7 +256,7 @@ impl Parser<'_> {
     }
 
     /// Reports an `end` whose name or word does not belong to what it closes; the cursor is on `end`.
-    pub(super) fn wrong_end(&mut self, open: Open) {
+    pub(super) fn wrong_end(&mut self, open: OpenBlock) {
         let (what, closing) = open.words();
         let found = self.found_at_end();
         let place = match self.peek_kind(1) {
@@ -282,11 +284,11 @@ impl Parser<'_> {
         let closes = follows == TokenKind::Semicolon;
         let goes_on = !matches!(follows, TokenKind::Equal | TokenKind::Assign | TokenKind::Dot | TokenKind::Semicolon);
         match (self.word(self.token()), top) {
-            ("elif" | "elsif", OpenKind::If) if goes_on => Some((TokenKind::Elseif, "elseif")),
-            ("endif", OpenKind::If) if closes => Some((TokenKind::End, "end if")),
-            ("endfor", OpenKind::For) if closes => Some((TokenKind::End, "end for")),
-            ("endwhile", OpenKind::While) if closes => Some((TokenKind::End, "end while")),
-            ("endwhen", OpenKind::When) if closes => Some((TokenKind::End, "end when")),
+            ("elif" | "elsif", OpenBlockKind::If) if goes_on => Some((TokenKind::Elseif, "elseif")),
+            ("endif", OpenBlockKind::If) if closes => Some((TokenKind::End, "end if")),
+            ("endfor", OpenBlockKind::For) if closes => Some((TokenKind::End, "end for")),
+            ("endwhile", OpenBlockKind::While) if closes => Some((TokenKind::End, "end while")),
+            ("endwhen", OpenBlockKind::When) if closes => Some((TokenKind::End, "end when")),
             _ => None,
         }
     }
@@ -308,19 +310,19 @@ impl Parser<'_> {
     }
 }
 
-impl Open {
+impl OpenBlock {
     /// What it is called, and how it is closed.
     fn words(&self) -> (String, String) {
         let block = |word: &str| (format!("this `{word}`"), format!("end {word}"));
         match self.kind {
-            OpenKind::Class(name) => {
+            OpenBlockKind::Class(name) => {
                 let name = shortened(name.as_str());
                 (format!("class `{name}`"), format!("end {name}"))
             }
-            OpenKind::If => block("if"),
-            OpenKind::For => block("for"),
-            OpenKind::While => block("while"),
-            OpenKind::When => block("when"),
+            OpenBlockKind::If => block("if"),
+            OpenBlockKind::For => block("for"),
+            OpenBlockKind::While => block("while"),
+            OpenBlockKind::When => block("when"),
         }
     }
 }

@@ -1,11 +1,11 @@
 //! Statements of algorithm sections.
 
-use super::{Parse, Parser, equation, expr, modification};
+use super::{ParseResult, Parser, equation, expr, modification};
 use crate::ast::{BinaryOp, Expr, ExprKind, Statement, StatementKind};
 use crate::token::TokenKind;
 
 /// One statement, without its semicolon.
-pub(super) fn statement(p: &mut Parser<'_>) -> Parse<Statement> {
+pub(super) fn statement(p: &mut Parser<'_>) -> ParseResult<Statement> {
     let start = p.span();
     let kind = p.nested(statement_kind)?;
     let span = p.since(start);
@@ -13,7 +13,7 @@ pub(super) fn statement(p: &mut Parser<'_>) -> Parse<Statement> {
     Ok(Statement { kind, span })
 }
 
-fn statement_kind(p: &mut Parser<'_>) -> Parse<StatementKind> {
+fn statement_kind(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     Ok(match p.kind() {
         TokenKind::If => {
             let (branches, otherwise) = equation::if_block(p, statement)?;
@@ -46,7 +46,7 @@ fn statement_kind(p: &mut Parser<'_>) -> Parse<StatementKind> {
 }
 
 /// `(a, , c) := f(x)`.
-fn assign_tuple(p: &mut Parser<'_>) -> Parse<StatementKind> {
+fn assign_tuple(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     let targets = expr::output_list(p)?;
     assignment_sign(p)?;
     let value = expr::expression(p)?;
@@ -58,7 +58,7 @@ fn assign_tuple(p: &mut Parser<'_>) -> Parse<StatementKind> {
 }
 
 /// `a := b` or `f(x)`.
-fn assign_or_call(p: &mut Parser<'_>) -> Parse<StatementKind> {
+fn assign_or_call(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     let left = expr::simple_expression(p)?;
     match left.kind {
         ExprKind::Call { .. } if !at_assignment_sign(p) => return Ok(StatementKind::Call(left)),
@@ -74,7 +74,7 @@ fn assign_or_call(p: &mut Parser<'_>) -> Parse<StatementKind> {
     Ok(StatementKind::Assign(left, expr::expression(p)?))
 }
 
-fn check_target(p: &mut Parser<'_>, left: &Expr) -> Parse<()> {
+fn check_target(p: &mut Parser<'_>, left: &Expr) -> ParseResult<()> {
     if matches!(left.kind, ExprKind::Reference(_)) {
         return Ok(());
     }
@@ -92,7 +92,7 @@ fn at_assignment_sign(p: &Parser<'_>) -> bool {
     matches!(p.kind(), TokenKind::Assign | TokenKind::Equal)
 }
 
-fn assignment_sign(p: &mut Parser<'_>) -> Parse<()> {
+fn assignment_sign(p: &mut Parser<'_>) -> ParseResult<()> {
     if p.eat(TokenKind::Assign) {
         return Ok(());
     }

@@ -1,12 +1,13 @@
 //! Text of files, classes, components and modifications.
 
-use super::Printer;
+use super::SyntaxPrinter;
 use crate::ast::{
-    Argument, ArgumentKind, Causality, Class, ClassBody, ClassKind, Component, Constraint, Element, ElementKind,
-    EnumLiteral, Extends, Import, LongBody, Modification, Prefixes, StoredDefinition, TypePrefix, Variability,
+    CausalityPrefix, Class, ClassBody, ClassKind, ComponentDeclaration, ConstrainingClause, Element, ElementKind,
+    ElementPrefixes, EnumLiteral, ExtendsClause, Import, LongBody, Modification, ModificationArgument,
+    ModificationArgumentKind, StoredDefinition, TypePrefix, VariabilityPrefix,
 };
 
-impl Printer {
+impl SyntaxPrinter {
     pub(super) fn file(&mut self, file: &StoredDefinition) {
         if let Some(within) = &file.within {
             self.word("within ");
@@ -166,13 +167,13 @@ impl Printer {
         }
     }
 
-    fn extends(&mut self, extends: &Extends) {
+    fn extends(&mut self, extends: &ExtendsClause) {
         self.word("extends ");
         self.path(&extends.base);
         self.optional_modification(extends.modification.as_ref());
     }
 
-    fn prefixes(&mut self, prefixes: &Prefixes) {
+    fn prefixes(&mut self, prefixes: &ElementPrefixes) {
         self.prefix(prefixes.redeclare, "redeclare");
         self.prefix(prefixes.final_, "final");
         self.prefix(prefixes.inner, "inner");
@@ -184,25 +185,25 @@ impl Printer {
         self.prefix(prefix.flow, "flow");
         self.prefix(prefix.stream, "stream");
         match prefix.variability {
-            Some(Variability::Constant) => self.word("constant "),
-            Some(Variability::Parameter) => self.word("parameter "),
-            Some(Variability::Discrete) => self.word("discrete "),
+            Some(VariabilityPrefix::Constant) => self.word("constant "),
+            Some(VariabilityPrefix::Parameter) => self.word("parameter "),
+            Some(VariabilityPrefix::Discrete) => self.word("discrete "),
             None => {}
         }
         match prefix.causality {
-            Some(Causality::Input) => self.word("input "),
-            Some(Causality::Output) => self.word("output "),
+            Some(CausalityPrefix::Input) => self.word("input "),
+            Some(CausalityPrefix::Output) => self.word("output "),
             None => {}
         }
     }
 
     /// A component clause without its semicolon.
-    pub(super) fn component(&mut self, component: &Component) {
+    pub(super) fn component(&mut self, component: &ComponentDeclaration) {
         self.prefixes(&component.prefixes);
         self.declaration(component);
     }
 
-    fn declaration(&mut self, component: &Component) {
+    fn declaration(&mut self, component: &ComponentDeclaration) {
         self.type_prefix(&component.prefix);
         self.path(&component.class);
         self.word(" ");
@@ -218,7 +219,7 @@ impl Printer {
         self.constraint(component.constraint.as_ref());
     }
 
-    fn constraint(&mut self, constraint: Option<&Constraint>) {
+    fn constraint(&mut self, constraint: Option<&ConstrainingClause>) {
         if let Some(constraint) = constraint {
             self.word(" constrainedby ");
             self.path(&constraint.path);
@@ -261,34 +262,35 @@ impl Printer {
         }
     }
 
-    fn argument_list(&mut self, arguments: &[Argument]) {
+    fn argument_list(&mut self, arguments: &[ModificationArgument]) {
         self.word("(");
         self.separated(arguments, ", ", Self::argument);
         self.word(")");
     }
 
-    pub(super) fn argument(&mut self, argument: &Argument) {
+    pub(super) fn argument(&mut self, argument: &ModificationArgument) {
         match &argument.kind {
-            ArgumentKind::Modify { path, modification, description } => {
-                self.argument_prefixes(argument, &Prefixes::default());
+            ModificationArgumentKind::Modify { path, modification, description } => {
+                self.argument_prefixes(argument, &ElementPrefixes::default());
                 self.path(path);
                 self.optional_modification(modification.as_ref());
                 self.description(description.as_deref());
             }
-            ArgumentKind::Component(component) => {
+            ModificationArgumentKind::Component(component) => {
                 self.argument_prefixes(argument, &component.prefixes);
                 self.declaration(component);
             }
-            ArgumentKind::Class(class) => {
+            ModificationArgumentKind::Class(class) => {
                 self.argument_prefixes(argument, &class.prefixes);
-                let prefixes = Prefixes { redeclare: false, replaceable: false, final_: false, ..class.prefixes };
+                let prefixes =
+                    ElementPrefixes { redeclare: false, replaceable: false, final_: false, ..class.prefixes };
                 self.class(&Class { prefixes, ..Class::clone(class) });
             }
-            ArgumentKind::BreakComponent(name) => {
+            ModificationArgumentKind::BreakComponent(name) => {
                 self.word("break ");
                 self.ident(name);
             }
-            ArgumentKind::BreakConnect(a, b) => {
+            ModificationArgumentKind::BreakConnect(a, b) => {
                 self.word("break connect(");
                 self.expression(a);
                 self.word(", ");
@@ -298,7 +300,7 @@ impl Printer {
         }
     }
 
-    fn argument_prefixes(&mut self, argument: &Argument, prefixes: &Prefixes) {
+    fn argument_prefixes(&mut self, argument: &ModificationArgument, prefixes: &ElementPrefixes) {
         self.prefix(prefixes.redeclare, "redeclare");
         self.prefix(argument.each, "each");
         self.prefix(argument.final_, "final");

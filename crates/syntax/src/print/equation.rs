@@ -1,9 +1,9 @@
 //! Text of equations and statements. A simple one is a line without semicolon; blocks are indented.
 
-use super::Printer;
-use crate::ast::{Equation, EquationKind, Expr, Iterator, Statement, StatementKind};
+use super::SyntaxPrinter;
+use crate::ast::{Equation, EquationKind, Expr, ForIndex, Statement, StatementKind};
 
-impl Printer {
+impl SyntaxPrinter {
     pub(super) fn equation(&mut self, equation: &Equation) {
         match &equation.kind {
             EquationKind::Equal(left, right) => {
@@ -97,7 +97,7 @@ impl Printer {
         self.close("end if");
     }
 
-    fn for_block<T>(&mut self, iterators: &[Iterator], body: &[T], item: fn(&mut Self, &T)) {
+    fn for_block<T>(&mut self, iterators: &[ForIndex], body: &[T], item: fn(&mut Self, &T)) {
         self.word("for ");
         self.iterators(iterators);
         self.end(" loop");

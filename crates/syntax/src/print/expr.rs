@@ -1,7 +1,9 @@
 //! Text of names and expressions, with brackets only where they are needed.
 
-use super::Printer;
-use crate::ast::{BinaryOp, Expr, ExprKind, Ident, Iterator, Path, Reference, ReferencePart, Subscript, UnaryOp};
+use super::SyntaxPrinter;
+use crate::ast::{
+    BinaryOp, ComponentReference, Expr, ExprKind, ForIndex, Ident, Path, ReferencePart, Subscript, UnaryOp,
+};
 use std::fmt::Write;
 
 // Binding strength, as in the parser, with ranges and operands at the two ends.
@@ -16,7 +18,7 @@ const PRODUCT: u8 = 7;
 const POWER: u8 = 8;
 const OPERAND: u8 = 9;
 
-impl Printer {
+impl SyntaxPrinter {
     pub(super) fn path(&mut self, path: &Path) {
         if path.global {
             self.word(".");
@@ -28,7 +30,7 @@ impl Printer {
         self.word(ident.name.as_str());
     }
 
-    pub(super) fn reference(&mut self, reference: &Reference) {
+    pub(super) fn reference(&mut self, reference: &ComponentReference) {
         if reference.global {
             self.word(".");
         }
@@ -211,7 +213,7 @@ impl Printer {
         self.word(")");
     }
 
-    fn comprehension(&mut self, function: Option<&Reference>, body: &Expr, iterators: &[Iterator]) {
+    fn comprehension(&mut self, function: Option<&ComponentReference>, body: &Expr, iterators: &[ForIndex]) {
         if let Some(function) = function {
             self.reference(function);
         }
@@ -223,7 +225,7 @@ impl Printer {
         });
     }
 
-    pub(super) fn iterators(&mut self, iterators: &[Iterator]) {
+    pub(super) fn iterators(&mut self, iterators: &[ForIndex]) {
         self.separated(iterators, ", ", |p, iterator| {
             p.ident(&iterator.name);
             if let Some(range) = &iterator.range {

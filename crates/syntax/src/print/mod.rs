@@ -8,19 +8,20 @@ mod equation;
 mod expr;
 
 use super::ast::{
-    Argument, Class, Component, Equation, Expr, Modification, Path, Reference, Statement, StoredDefinition,
+    Class, ComponentDeclaration, ComponentReference, Equation, Expr, Modification, ModificationArgument, Path,
+    Statement, StoredDefinition,
 };
 use std::fmt;
 
 /// A text under construction.
 #[derive(Default)]
-struct Printer {
+struct SyntaxPrinter {
     out: String,
     /// Depth of indentation, two blanks each.
     depth: usize,
 }
 
-impl Printer {
+impl SyntaxPrinter {
     fn word(&mut self, text: &str) {
         self.out.push_str(text);
     }
@@ -66,7 +67,7 @@ macro_rules! display {
     ($($node:ty, $method:ident;)*) => {
         $(impl fmt::Display for $node {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                let mut printer = Printer::default();
+                let mut printer = SyntaxPrinter::default();
                 printer.$method(self);
                 f.write_str(&printer.out)
             }
@@ -77,12 +78,12 @@ macro_rules! display {
 display! {
     StoredDefinition, file;
     Class, class;
-    Component, component;
+    ComponentDeclaration, component;
     Modification, modification;
-    Argument, argument;
+    ModificationArgument, argument;
     Equation, equation;
     Statement, statement;
     Expr, expression;
-    Reference, reference;
+    ComponentReference, reference;
     Path, path;
 }

@@ -2,7 +2,7 @@
 
 use super::good::check_round_trip;
 use super::{FILE, messages, read, without_places};
-use crate::ast::{BinaryOp, Expr, ExprKind, Ident, Reference, ReferencePart, Subscript, UnaryOp};
+use crate::ast::{BinaryOp, ComponentReference, Expr, ExprKind, Ident, ReferencePart, Subscript, UnaryOp};
 use crate::diag::Span;
 use crate::parse_expression;
 use crate::symbol::Symbol;
@@ -274,8 +274,8 @@ fn ident(name: &str) -> Ident {
     Ident { name: Symbol::new(name), span: NOWHERE }
 }
 
-fn reference(name: &str, subscripts: Vec<Subscript>) -> Reference {
-    Reference { global: false, parts: vec![ReferencePart { name: ident(name), subscripts }], span: NOWHERE }
+fn reference(name: &str, subscripts: Vec<Subscript>) -> ComponentReference {
+    ComponentReference { global: false, parts: vec![ReferencePart { name: ident(name), subscripts }], span: NOWHERE }
 }
 
 fn leaf() -> impl Strategy<Value = Expr> {

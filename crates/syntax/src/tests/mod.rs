@@ -8,7 +8,7 @@ mod fuzz;
 mod good;
 mod limits;
 
-use super::{Parsed, parse};
+use super::{ParseOutput, parse};
 use crate::diag::{Diagnostic, FileId, Sources};
 use std::fmt::{Debug, Write};
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ use std::path::PathBuf;
 pub const FILE: FileId = FileId(0);
 
 /// Reads a text.
-pub fn read(text: &str) -> Parsed {
+pub fn read(text: &str) -> ParseOutput {
     parse(FILE, text)
 }
 

@@ -7,15 +7,15 @@ use std::path::Path;
 
 /// A temporary folder of this machine.
 #[derive(Debug)]
-pub struct Folder(tempfile::TempDir);
+pub struct TemporaryFolder(tempfile::TempDir);
 
-impl Folder {
+impl TemporaryFolder {
     /// An empty one.
     ///
     /// # Errors
     /// Why the disk does not take it.
     pub fn new() -> Result<Self, String> {
-        tempfile::Builder::new().prefix("bramah").tempdir().map(Folder).map_err(|e| reason(&e))
+        tempfile::Builder::new().prefix("bramah").tempdir().map(TemporaryFolder).map_err(|e| reason(&e))
     }
 
     /// Where it lies.

@@ -11,7 +11,7 @@ pub use compiler::CompiledC;
 pub use disk::DiskWorld;
 pub use disk::reason;
 #[cfg(feature = "fmi")]
-pub use folder::Folder;
+pub use folder::TemporaryFolder;
 
 use std::path::{Path, PathBuf};
 

@@ -1,15 +1,18 @@
 //! Components: from declarations with their modifiers to nodes, on demand and then all.
 
 use crate::instance::building::given::Override;
-use crate::instance::evaluation::ranges::Extent;
-use crate::instance::lookup::{Builtin, Found, STATE_SELECT, predefined_enumerations};
-use crate::instance::modifiers::{Access, Arg, ArgKind, At, Binding, Reached, extended, indexed};
-use crate::instance::template::{Kind, Template, What};
+use crate::instance::evaluation::ranges::ArrayExtent;
+use crate::instance::lookup::{BuiltinType, LookupResult, STATE_SELECT, predefined_enumerations};
+use crate::instance::modifiers::{
+    AccessStep, ArrayPosition, Binding, ElementModifiers, Modifier, ModifierKind, extended, indexed,
+};
+use crate::instance::template::{ExtendsModificationKind, Template, TemplateElementKind};
 use crate::instance::{
-    ClassRef, ComponentBuilder, ElementState, Inherited, Instance, Node, NodeId, ROOT, ScopeId, VarData, View, state,
+    ClassRef, ComponentBuilder, ElementState, InheritedPrefixes, Instance, InstanceNode, InstanceVariable,
+    LookupContext, NodeId, ROOT, ScopeId, state,
 };
 use crate::resolve::{ClassId, Library};
-use bramah_expr::types::{StateSelect, Type, Variability};
+use bramah_expr::types::{ScalarType, StateSelect, Variability};
 use bramah_expr::{Exprs, VarId};
 use bramah_syntax::ast::{self, ClassKind, Expr, ExprKind, Subscript};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
@@ -65,9 +68,9 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         compiled_c: FxHashMap::default(),
         outer_checked: FxHashMap::default(),
         varied: false,
-        streams: crate::instance::Streams::default(),
+        streams: crate::instance::StreamConnections::default(),
         connected: FxHashMap::default(),
-        overconstrained: crate::instance::overconstrained::Overconstrained::default(),
+        overconstrained: crate::instance::overconstrained::OverconstrainedComponents::default(),
         variabilities: Vec::new(),
         operator_records: Vec::new(),
         functions: Vec::new(),
@@ -75,7 +78,7 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         #[cfg(feature = "fmi")]
         units: FxHashMap::default(),
         given_elements: Vec::new(),
-        eval: state::State::default(),
+        eval: state::EvaluationState::default(),
     };
     instance.builder().build_model(request);
     instance
@@ -127,11 +130,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// The view from which a class given by its full name sees its surroundings.
-    fn surroundings(&mut self, class: ClassId) -> View {
+    fn surroundings(&mut self, class: ClassId) -> LookupContext {
         let Some(parent) = self.instance.library.parent(class) else { return ROOT };
         let around = self.surroundings(parent);
         let found = ClassRef { class: parent, parent: around, args: Rc::from([]) };
-        View { scope: self.instance.names().package(&found), base: 0 }
+        LookupContext { scope: self.instance.names().package(&found), base: 0 }
     }
 
     fn can_run(&mut self, class: &'a ast::Class, name: &str) -> bool {
@@ -172,7 +175,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             return;
         }
         for (i, element) in (0u32..).zip(&template.elements) {
-            if matches!(element.kind, Kind::Component(_)) {
+            if matches!(element.kind, TemplateElementKind::Component(_)) {
                 self.component_at(scope, i, depth);
             }
         }
@@ -198,9 +201,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let args = self.instance.scope(scope).args.clone();
         for arg in args.iter() {
             let name = match arg.kind {
-                ArgKind::Modify(path, _) => path[0],
-                ArgKind::Component(c) => c.name,
-                ArgKind::Class(c) => c.name,
+                ModifierKind::Modify(path, _) => path[0],
+                ModifierKind::Component(c) => c.name,
+                ModifierKind::Class(c) => c.name,
             };
             if let Some(&i) = template.by_name.get(&name.name) {
                 if template.elements[i as usize].protected {
@@ -259,8 +262,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     fn build_component(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
         let template = self.instance.scope(scope).template.clone();
         let element = &template.elements[index as usize];
-        let Kind::Component(declared) = element.kind else { return None };
-        let own = View { scope, base: element.base };
+        let TemplateElementKind::Component(declared) = element.kind else { return None };
+        let own = LookupContext { scope, base: element.base };
         if declared.prefixes.outer && !declared.prefixes.inner {
             self.check_outer_unmodified(scope, declared);
             return self.outer_component(scope, declared, own);
@@ -272,7 +275,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             return None;
         }
         let (component, view) = match reached.redeclare {
-            Some((ArgKind::Component(c), view, ..)) => (c, view),
+            Some((ModifierKind::Component(c), view, ..)) => (c, view),
             _ => (declared, own),
         };
         let found = self.instance.names().class_at(view, &component.class)?;
@@ -280,7 +283,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let found = self.with_unit(found, &reached.args, declared.name.span)?;
         self.check_redeclaration(declared, own, component, &found);
         self.check_chain(declared, own, &reached.redeclarations, &found);
-        let plan = Plan {
+        let plan = ComponentPlan {
             name: joined(&self.instance.scope(scope).name, element.name),
             scope,
             index: Some(index),
@@ -299,9 +302,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         &self,
         scope: ScopeId,
         protected: bool,
-        component: &ast::Component,
-        declared: &ast::Component,
-    ) -> Inherited {
+        component: &ast::ComponentDeclaration,
+        declared: &ast::ComponentDeclaration,
+    ) -> InheritedPrefixes {
         let outer = self.instance.scope(scope).prefix;
         let prefix = if component.prefix.variability.is_some() { component.prefix } else { declared.prefix };
         let stricter = match (outer.variability, prefix.variability) {
@@ -310,7 +313,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         };
         // `HideResult = false` shows what is protected, too (MLS 18.3)
         let said = annotated(declared, "HideResult");
-        Inherited {
+        InheritedPrefixes {
             variability: stricter,
             causality: component.prefix.causality.or(declared.prefix.causality).or(outer.causality),
             flow: outer.flow || component.prefix.flow || declared.prefix.flow,
@@ -327,10 +330,10 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         &mut self,
         own: Option<Symbol>,
         subscripts: &'a [Subscript],
-        view: View,
+        view: LookupContext,
         binding: Option<&Binding<'a>>,
         skip: usize,
-    ) -> Option<Vec<Extent>> {
+    ) -> Option<Vec<ArrayExtent>> {
         let mut dims = Vec::with_capacity(subscripts.len());
         for (i, s) in subscripts.iter().enumerate() {
             let before = own.and_then(|name| own_size(s, name)).and_then(|k| dims.get(k.checked_sub(1)?));
@@ -353,7 +356,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                         None => self.instance.evaluator().binding_value(b, true)?.dims().to_vec(),
                     };
                     match sizes.get(skip + i) {
-                        Some(&size) => Extent { size, by: Type::Integer },
+                        Some(&size) => ArrayExtent { size, by: ScalarType::Integer },
                         None => {
                             self.instance.report(
                                 Diagnostic::new(Code::SizeMismatch, "the value has fewer dimensions than the array")
@@ -373,14 +376,14 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Builds a component with the array dimensions of its declaration and of its type.
     pub(in crate::instance) fn build_shaped(
         &mut self,
-        plan: &Plan<'a>,
-        found: &Found<'a>,
-        dims: &[Extent],
-        reached: Reached<'a>,
+        plan: &ComponentPlan<'a>,
+        found: &LookupResult<'a>,
+        dims: &[ArrayExtent],
+        reached: ElementModifiers<'a>,
     ) -> Option<NodeId> {
         let mut all = dims.to_vec();
         let template = match found {
-            Found::Class(class) => {
+            LookupResult::Class(class) => {
                 let t = self.instance.names().template(class.class, class.parent);
                 for (subscripts, base) in t.dims.iter().rev() {
                     let view = t.bases[*base as usize].parent;
@@ -403,11 +406,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             return None;
         }
         let of_type = match found {
-            Found::Class(class) => class.args.clone(),
+            LookupResult::Class(class) => class.args.clone(),
             _ => Rc::from([]),
         };
         let args = (reached.args.into(), of_type);
-        let part = Part { binding: reached.binding, final_: reached.final_ };
+        let part = ComponentValue { binding: reached.binding, final_: reached.final_ };
         let node = self.build_array(plan, found, template.as_ref(), (&all, dims.len()), &args, part)?;
         if let Some(template) = template {
             self.note_constraints(node, dims.is_empty(), found, &template);
@@ -417,15 +420,15 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 
     fn build_array(
         &mut self,
-        plan: &Plan<'a>,
-        found: &Found<'a>,
+        plan: &ComponentPlan<'a>,
+        found: &LookupResult<'a>,
         template: Option<&Rc<Template<'a>>>,
-        (extents, declared): (&[Extent], usize),
+        (extents, declared): (&[ArrayExtent], usize),
         // what the declaration says of the component, and what its class has been modified by
-        (args, of_type): &(Rc<[Arg<'a>]>, Rc<[Arg<'a>]>),
-        part: Part<'a>,
+        (args, of_type): &(Rc<[Modifier<'a>]>, Rc<[Modifier<'a>]>),
+        part: ComponentValue<'a>,
     ) -> Option<NodeId> {
-        let all = |args: Rc<[Arg<'a>]>, of_type: Rc<[Arg<'a>]>| match of_type.is_empty() {
+        let all = |args: Rc<[Modifier<'a>]>, of_type: Rc<[Modifier<'a>]>| match of_type.is_empty() {
             true => args,
             false => args.iter().chain(of_type.iter()).cloned().collect(),
         };
@@ -443,12 +446,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             // a type is one value inside whatever array it is used in
             let args = all(indexed(args, &index), indexed(of_type, &index[declared..]));
             let binding = part.binding.clone().map(|b| Binding { access: extended(&b.access, &index), ..b });
-            let part = Part { binding, ..part.clone() };
+            let part = ComponentValue { binding, ..part.clone() };
             // The attributes of an array type are indexed by the type's own dimensions only.
             let own = &index[declared..];
             elements.push(self.build_one(plan, (&name, own), found, template, args, part)?);
         }
-        Some(self.instance.add_node(Node::Array {
+        Some(self.instance.add_node(InstanceNode::Array {
             dims,
             by: extents.iter().map(|e| e.by).collect(),
             elements: elements.into(),
@@ -457,16 +460,16 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 
     fn build_one(
         &mut self,
-        plan: &Plan<'a>,
-        (name, index): (&str, &[At]),
-        found: &Found<'a>,
+        plan: &ComponentPlan<'a>,
+        (name, index): (&str, &[ArrayPosition]),
+        found: &LookupResult<'a>,
         template: Option<&Rc<Template<'a>>>,
-        args: Rc<[Arg<'a>]>,
-        part: Part<'a>,
+        args: Rc<[Modifier<'a>]>,
+        part: ComponentValue<'a>,
     ) -> Option<NodeId> {
         match (found, template) {
-            (Found::Builtin(b), _) => Some(self.build_variable(plan, name, *b, &args, (&[], None), part)),
-            (Found::Class(_), Some(t)) => match t.builtin {
+            (LookupResult::Builtin(b), _) => Some(self.build_variable(plan, name, *b, &args, (&[], None), part)),
+            (LookupResult::Class(_), Some(t)) => match t.builtin {
                 Some(b) => {
                     let chain = self.type_args(t, index);
                     Some(self.build_variable(plan, name, b, &args, (&chain, t.prefix.causality), part))
@@ -478,14 +481,14 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// Attribute modifications of a type chain, each seen from around the class it stands in.
-    fn type_args(&self, t: &Template<'a>, index: &[At]) -> Vec<Arg<'a>> {
-        let none: Rc<[Access]> = Rc::from([]);
+    fn type_args(&self, t: &Template<'a>, index: &[ArrayPosition]) -> Vec<Modifier<'a>> {
+        let none: Rc<[AccessStep]> = Rc::from([]);
         // A type is scalar inside the class that gives it its dimensions.
         let shaped = t.dims.iter().map(|(_, base)| *base).min().unwrap_or(0);
         let mut chain = Vec::new();
         for s in &t.builtin_args {
-            let What::Argument(a) = s.what else { continue };
-            let arg = Arg::new(a, t.bases[s.base as usize].parent, &none, false);
+            let ExtendsModificationKind::Argument(a) = s.what else { continue };
+            let arg = Modifier::new(a, t.bases[s.base as usize].parent, &none, false);
             let own = if s.base <= shaped { index } else { &[] };
             chain.extend(arg.iter().flat_map(|a| indexed(std::slice::from_ref(a), own).to_vec()));
         }
@@ -494,11 +497,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 
     fn build_object(
         &mut self,
-        plan: &Plan<'a>,
+        plan: &ComponentPlan<'a>,
         name: &str,
         template: &Rc<Template<'a>>,
-        args: Rc<[Arg<'a>]>,
-        part: Part<'a>,
+        args: Rc<[Modifier<'a>]>,
+        part: ComponentValue<'a>,
     ) -> Option<NodeId> {
         if !self.can_be_component(plan, template) {
             return None;
@@ -529,7 +532,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             }
             None => {}
         }
-        let node = self.instance.add_node(Node::Object(scope));
+        let node = self.instance.add_node(InstanceNode::Object(scope));
         if let Some(index) = plan.index.filter(|_| name == plan.name) {
             // a modifier may ask for sizes of the component that it modifies: its elements are built when asked for
             self.instance.scope_mut(plan.scope).elements[index as usize] = ElementState::Node(node);
@@ -538,7 +541,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some(node)
     }
 
-    fn can_be_component(&mut self, plan: &Plan<'a>, template: &Template<'a>) -> bool {
+    fn can_be_component(&mut self, plan: &ComponentPlan<'a>, template: &Template<'a>) -> bool {
         let ast = template.bases[0].ast;
         let class = || self.instance.library.full_name(template.class);
         let d = match template.kind {
@@ -556,26 +559,26 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 
     fn build_variable(
         &mut self,
-        plan: &Plan<'a>,
+        plan: &ComponentPlan<'a>,
         name: &str,
-        builtin: Builtin,
-        args: &[Arg<'a>],
+        builtin: BuiltinType,
+        args: &[Modifier<'a>],
         // Modifications of the type chain, and `input` or `output` where the type is a connector declared so.
-        (chain, declared): (&[Arg<'a>], Option<ast::Causality>),
-        part: Part<'a>,
+        (chain, declared): (&[Modifier<'a>], Option<ast::CausalityPrefix>),
+        part: ComponentValue<'a>,
     ) -> NodeId {
         let causality = plan.prefix.causality.or(declared);
         let ty = match builtin {
-            Builtin::Real | Builtin::String | Builtin::Object => Type::Real,
-            Builtin::Integer => Type::Integer,
-            Builtin::Boolean => Type::Boolean,
-            Builtin::Enumeration(i) => Type::Enumeration(i),
+            BuiltinType::Real | BuiltinType::String | BuiltinType::Object => ScalarType::Real,
+            BuiltinType::Integer => ScalarType::Integer,
+            BuiltinType::Boolean => ScalarType::Boolean,
+            BuiltinType::Enumeration(i) => ScalarType::Enumeration(i),
         };
         let variability = match plan.prefix.variability {
-            Some(ast::Variability::Constant) => Variability::Constant,
-            Some(ast::Variability::Parameter) => Variability::Parameter,
-            Some(ast::Variability::Discrete) => Variability::Discrete,
-            None if ty != Type::Real => Variability::Discrete,
+            Some(ast::VariabilityPrefix::Constant) => Variability::Constant,
+            Some(ast::VariabilityPrefix::Parameter) => Variability::Parameter,
+            Some(ast::VariabilityPrefix::Discrete) => Variability::Discrete,
+            None if ty != ScalarType::Real => Variability::Discrete,
             None => Variability::Continuous,
         };
         let mut attributes = self.attributes(args.iter().chain(chain), builtin);
@@ -594,11 +597,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 attributes.push((Symbol::new("start"), start));
             }
         }
-        let data = VarData {
+        let data = InstanceVariable {
             name: name.to_string(),
             ty,
-            string: builtin == Builtin::String,
-            object: builtin == Builtin::Object,
+            string: builtin == BuiltinType::String,
+            object: builtin == BuiltinType::Object,
             variability,
             causality,
             top: !plan.prefix.nested && causality.is_some() && !plan.prefix.hidden,
@@ -624,20 +627,20 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let index = u32::try_from(self.instance.variables.len() - 1).expect("limited above");
         let state_select = self.state_select(index);
         self.instance.variables[index as usize].state_select = state_select;
-        self.instance.add_node(Node::Var(index))
+        self.instance.add_node(InstanceNode::Var(index))
     }
 
     fn attributes<'x>(
         &mut self,
-        args: impl Iterator<Item = &'x Arg<'a>>,
-        builtin: Builtin,
+        args: impl Iterator<Item = &'x Modifier<'a>>,
+        builtin: BuiltinType,
     ) -> Vec<(Symbol, Binding<'a>)>
     where
         'a: 'x,
     {
         let mut attributes: Vec<(Symbol, Binding<'a>)> = Vec::new();
         for arg in args {
-            let ArgKind::Modify(path, modification) = arg.kind else { continue };
+            let ModifierKind::Modify(path, modification) = arg.kind else { continue };
             let attribute = path[0].name;
             if !attributes_of(builtin).contains(&attribute.as_str()) || path.len() > 1 {
                 self.instance.unknown_attribute(attribute, path[0].span, builtin);
@@ -660,7 +663,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let Some((name, b)) = attributes.iter().find(|(n, _)| *n == "stateSelect").cloned() else {
             return StateSelect::Default;
         };
-        match self.instance.parameters().known_attribute(i, name, &b, Type::Enumeration(STATE_SELECT)) {
+        match self.instance.parameters().known_attribute(i, name, &b, ScalarType::Enumeration(STATE_SELECT)) {
             Some(1.0) => StateSelect::Never,
             Some(2.0) => StateSelect::Avoid,
             Some(4.0) => StateSelect::Prefer,
@@ -672,33 +675,33 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 
 /// What is the same for all elements of a component array.
 #[derive(Clone)]
-pub(in crate::instance) struct Plan<'a> {
+pub(in crate::instance) struct ComponentPlan<'a> {
     pub name: String,
     pub scope: ScopeId,
     /// Which element of the scope; none for what was added.
     pub index: Option<u32>,
-    pub declared: &'a ast::Component,
-    pub prefix: Inherited,
+    pub declared: &'a ast::ComponentDeclaration,
+    pub prefix: InheritedPrefixes,
     pub span: Span,
     pub depth: usize,
 }
 
 /// Value of a component.
 #[derive(Clone)]
-struct Part<'a> {
+struct ComponentValue<'a> {
     binding: Option<Binding<'a>>,
     final_: bool,
 }
 
 /// The attributes of a predefined type (MLS 4.9).
-pub(in crate::instance) fn attributes_of(builtin: Builtin) -> &'static [&'static str] {
+pub(in crate::instance) fn attributes_of(builtin: BuiltinType) -> &'static [&'static str] {
     match builtin {
-        Builtin::Real => {
+        BuiltinType::Real => {
             &["start", "fixed", "min", "max", "nominal", "unit", "displayUnit", "quantity", "stateSelect", "unbounded"]
         }
-        Builtin::Integer | Builtin::Enumeration(_) => &["start", "fixed", "min", "max", "quantity"],
-        Builtin::Boolean | Builtin::String => &["start", "fixed", "quantity"],
-        Builtin::Object => &[],
+        BuiltinType::Integer | BuiltinType::Enumeration(_) => &["start", "fixed", "min", "max", "quantity"],
+        BuiltinType::Boolean | BuiltinType::String => &["start", "fixed", "quantity"],
+        BuiltinType::Object => &[],
     }
 }
 
@@ -707,20 +710,20 @@ fn joined(owner: &str, name: Symbol) -> String {
 }
 
 /// Row-major index of an element.
-fn unravel(mut flat: usize, dims: &[usize]) -> Vec<At> {
+fn unravel(mut flat: usize, dims: &[usize]) -> Vec<ArrayPosition> {
     let small = |n: usize| u32::try_from(n).expect("limited above");
-    let mut index = vec![At { place: 0, of: 0 }; dims.len()];
+    let mut index = vec![ArrayPosition { place: 0, of: 0 }; dims.len()];
     for (i, &d) in dims.iter().enumerate().rev() {
-        index[i] = At { place: small(flat % d), of: small(d) };
+        index[i] = ArrayPosition { place: small(flat % d), of: small(d) };
         flat /= d;
     }
     index
 }
 
 /// The start value that modifiers give an array.
-fn start_of<'a>(args: &[Arg<'a>]) -> Option<Binding<'a>> {
+fn start_of<'a>(args: &[Modifier<'a>]) -> Option<Binding<'a>> {
     args.iter().find_map(|arg| match arg.kind {
-        ArgKind::Modify([name], Some(m)) if name.name == "start" && !arg.each => {
+        ModifierKind::Modify([name], Some(m)) if name.name == "start" && !arg.each => {
             let expr = m.value.as_ref()?;
             Some(Binding { expr, view: arg.view, access: arg.access.clone(), final_: arg.final_ })
         }
@@ -729,14 +732,14 @@ fn start_of<'a>(args: &[Arg<'a>]) -> Option<Binding<'a>> {
 }
 
 /// What an annotation of a component that is true or false says (MLS 18.3).
-fn annotated(c: &ast::Component, name: &str) -> Option<bool> {
+fn annotated(c: &ast::ComponentDeclaration, name: &str) -> Option<bool> {
     says(c.annotation.as_ref()?, name)
 }
 
 /// What an annotation says of something that is true or false.
 pub(in crate::instance) fn says(annotation: &ast::Modification, name: &str) -> Option<bool> {
     annotation.arguments.iter().find_map(|a| match &a.kind {
-        ast::ArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
+        ast::ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
             match m.value.as_ref().map(|v| &v.kind) {
                 Some(ExprKind::Boolean(said)) => Some(*said),
                 _ => None,

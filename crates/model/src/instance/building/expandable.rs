@@ -1,13 +1,15 @@
 //! Expandable connectors (MLS 9.1.3): what is connected to a name that a bus does not have becomes a member of it, and buses
 //! that are joined have the same members.
 
-use crate::instance::components::Plan;
-use crate::instance::deduce::Body;
-use crate::instance::lookup::{Builtin, Found};
-use crate::instance::modifiers::Reached;
-use crate::instance::template::{Element, Kind};
-use crate::instance::{ClassRef, ComponentBuilder, ElementState, Inherited, Node, NodeId, ScopeId, View};
-use bramah_expr::types::Type;
+use crate::instance::components::ComponentPlan;
+use crate::instance::deduce::LoopBody;
+use crate::instance::lookup::{BuiltinType, LookupResult};
+use crate::instance::modifiers::ElementModifiers;
+use crate::instance::template::{TemplateElement, TemplateElementKind};
+use crate::instance::{
+    ClassRef, ComponentBuilder, ElementState, InheritedPrefixes, InstanceNode, LookupContext, NodeId, ScopeId,
+};
+use bramah_expr::types::ScalarType;
 use bramah_syntax::ast::{self, ClassBody, Equation, EquationKind, Expr, ExprKind};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
@@ -16,7 +18,7 @@ use std::rc::Rc;
 const ROUNDS: usize = 100;
 
 /// One side of a connection.
-enum Side {
+enum ExpandableSide {
     /// A member that a bus lacks.
     Missing(ScopeId, Symbol),
     /// A bus.
@@ -38,7 +40,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 let template = self.instance.scope(scope).template.clone();
                 for (base, i) in template.bases.iter().zip(0u32..) {
                     if let ClassBody::Long(body) = &base.ast.body {
-                        self.expand_by(&body.equations, View { scope, base: i });
+                        self.expand_by(&body.equations, LookupContext { scope, base: i });
                     }
                 }
             }
@@ -48,7 +50,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    fn expand_by(&mut self, equations: &'a [Equation], view: View) {
+    fn expand_by(&mut self, equations: &'a [Equation], view: LookupContext) {
         for e in equations {
             match &e.kind {
                 EquationKind::Connect(a, b) => {
@@ -57,9 +59,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                     }
                 }
                 EquationKind::For { iterators, body } => {
-                    self.instance
-                        .statements()
-                        .for_each(iterators, Body::Equations(body), view, &mut |s| s.builder().expand_by(body, view));
+                    self.instance.statements().for_each(iterators, LoopBody::Equations(body), view, &mut |s| {
+                        s.builder().expand_by(body, view)
+                    });
                 }
                 EquationKind::If { branches, otherwise } => {
                     let mark = self.instance.diagnostics.len();
@@ -84,21 +86,21 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// What a side of a connection names; `None` where the network has to say what is wrong, or nothing is there.
-    fn side(&mut self, e: &'a Expr, view: View) -> Option<Side> {
+    fn side(&mut self, e: &'a Expr, view: LookupContext) -> Option<ExpandableSide> {
         let ExprKind::Reference(r) = &e.kind else { return None };
-        let Found::Component(scope, index) = self.instance.names().lookup(view, r.parts[0].name.name)? else {
+        let LookupResult::Component(scope, index) = self.instance.names().lookup(view, r.parts[0].name.name)? else {
             return None;
         };
         let mut node = self.component(scope, index)?;
         let last = r.parts.len() - 1;
         for (i, part) in r.parts.iter().enumerate() {
             if i > 0 {
-                let Node::Object(s) = *self.instance.node(node) else { return None };
+                let InstanceNode::Object(s) = *self.instance.node(node) else { return None };
                 let template = self.instance.scope(s).template.clone();
                 match template.by_name.get(&part.name.name) {
                     Some(&k) => node = self.component(s, k)?,
                     None if template.is_expandable() && i == last && part.subscripts.is_empty() => {
-                        return Some(Side::Missing(s, part.name.name));
+                        return Some(ExpandableSide::Missing(s, part.name.name));
                     }
                     None => return None,
                 }
@@ -111,23 +113,27 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             }
         }
         match self.instance.node(node) {
-            Node::Object(s) if self.instance.scope(*s).template.is_expandable() => Some(Side::Bus(*s)),
-            _ => Some(Side::Port(node)),
+            InstanceNode::Object(s) if self.instance.scope(*s).template.is_expandable() => {
+                Some(ExpandableSide::Bus(*s))
+            }
+            _ => Some(ExpandableSide::Port(node)),
         }
     }
 
-    fn expand_pair(&mut self, a: &Side, b: &Side) {
+    fn expand_pair(&mut self, a: &ExpandableSide, b: &ExpandableSide) {
         match (a, b) {
-            (Side::Missing(bus, name), Side::Port(port)) | (Side::Port(port), Side::Missing(bus, name)) => {
+            (ExpandableSide::Missing(bus, name), ExpandableSide::Port(port))
+            | (ExpandableSide::Port(port), ExpandableSide::Missing(bus, name)) => {
                 self.add_member(*bus, *name, *port);
             }
-            (Side::Missing(bus, name), Side::Bus(other)) | (Side::Bus(other), Side::Missing(bus, name)) => {
+            (ExpandableSide::Missing(bus, name), ExpandableSide::Bus(other))
+            | (ExpandableSide::Bus(other), ExpandableSide::Missing(bus, name)) => {
                 let node = self.node_of(*other);
                 if let Some(node) = node {
                     self.add_member(*bus, *name, node);
                 }
             }
-            (Side::Bus(x), Side::Bus(y)) => {
+            (ExpandableSide::Bus(x), ExpandableSide::Bus(y)) => {
                 for (from, to) in [(*x, *y), (*y, *x)] {
                     let template = self.instance.scope(from).template.clone();
                     for (i, element) in (0u32..).zip(&template.elements) {
@@ -143,7 +149,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     fn node_of(&self, scope: ScopeId) -> Option<NodeId> {
-        let at = self.instance.nodes.iter().position(|n| matches!(n, Node::Object(s) if *s == scope))?;
+        let at = self.instance.nodes.iter().position(|n| matches!(n, InstanceNode::Object(s) if *s == scope))?;
         Some(NodeId(u32::try_from(at).expect("fewer than 2^32 components")))
     }
 
@@ -153,12 +159,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let around = self.instance.scope(bus);
         let full = if around.name.is_empty() { name.as_str().to_owned() } else { format!("{}.{name}", around.name) };
         let (span, hidden) = (around.span, around.prefix.hidden);
-        let plan = Plan {
+        let plan = ComponentPlan {
             name: full,
             scope: bus,
             index: None,
             declared,
-            prefix: Inherited { hidden, nested: true, ..Inherited::default() },
+            prefix: InheritedPrefixes { hidden, nested: true, ..InheritedPrefixes::default() },
             span,
             depth: 0,
         };
@@ -168,9 +174,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let index = u32::try_from(template.elements.len()).expect("fewer than 2^32 elements");
         template.by_name.insert(name, index);
         template.bases[0].names.insert(name);
-        template.elements.push(Element {
+        template.elements.push(TemplateElement {
             name,
-            kind: Kind::Component(declared),
+            kind: TemplateElementKind::Component(declared),
             base: 0,
             modified: Vec::new(),
             protected: false,
@@ -182,53 +188,59 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// The declaration, class and sizes of a port.
-    fn declaration_of(&mut self, node: NodeId) -> Option<(&'a ast::Component, Found<'a>, Vec<usize>)> {
+    fn declaration_of(
+        &mut self,
+        node: NodeId,
+    ) -> Option<(&'a ast::ComponentDeclaration, LookupResult<'a>, Vec<usize>)> {
         let (dims, one) = match self.instance.node(node) {
-            Node::Array { dims, elements, .. } => (dims.clone(), *elements.first()?),
+            InstanceNode::Array { dims, elements, .. } => (dims.clone(), *elements.first()?),
             _ => (Vec::new(), node),
         };
         let (owner, name, found) = match self.instance.node(one) {
-            Node::Var(i) => {
+            InstanceNode::Var(i) => {
                 let data = &self.instance.variables[*i as usize];
                 let builtin = match data.ty {
-                    Type::Real => Builtin::Real,
-                    Type::Integer => Builtin::Integer,
-                    Type::Boolean => Builtin::Boolean,
-                    Type::Enumeration(e) => Builtin::Enumeration(e),
+                    ScalarType::Real => BuiltinType::Real,
+                    ScalarType::Integer => BuiltinType::Integer,
+                    ScalarType::Boolean => BuiltinType::Boolean,
+                    ScalarType::Enumeration(e) => BuiltinType::Enumeration(e),
                 };
-                (data.scope, data.name.clone(), Found::Builtin(builtin))
+                (data.scope, data.name.clone(), LookupResult::Builtin(builtin))
             }
-            Node::Object(s) => {
+            InstanceNode::Object(s) => {
                 let s = self.instance.scope(*s);
                 let base = &s.template.bases[0];
                 let class = ClassRef { class: base.class, parent: base.parent, args: s.args.clone() };
-                (s.owner?, s.name.clone(), Found::Class(class))
+                (s.owner?, s.name.clone(), LookupResult::Class(class))
             }
-            Node::Array { .. } => return None,
+            InstanceNode::Array { .. } => return None,
         };
         let last = name.rsplit('.').next().unwrap_or(&name);
         let last = Symbol::new(last.split('[').next().unwrap_or(last));
         let template = &self.instance.scope(owner).template;
-        let Kind::Component(declared) = template.elements[*template.by_name.get(&last)? as usize].kind else {
+        let TemplateElementKind::Component(declared) = template.elements[*template.by_name.get(&last)? as usize].kind
+        else {
             return None;
         };
         Some((declared, found, dims))
     }
 
-    fn build_like(&mut self, plan: &Plan<'a>, found: &Found<'a>, dims: &[usize]) -> Option<NodeId> {
-        let extents: Vec<crate::instance::evaluation::ranges::Extent> =
-            dims.iter().map(|&size| crate::instance::evaluation::ranges::Extent { size, by: Type::Integer }).collect();
-        self.build_shaped(plan, found, &extents, Reached::default())
+    fn build_like(&mut self, plan: &ComponentPlan<'a>, found: &LookupResult<'a>, dims: &[usize]) -> Option<NodeId> {
+        let extents: Vec<crate::instance::evaluation::ranges::ArrayExtent> = dims
+            .iter()
+            .map(|&size| crate::instance::evaluation::ranges::ArrayExtent { size, by: ScalarType::Integer })
+            .collect();
+        self.build_shaped(plan, found, &extents, ElementModifiers::default())
     }
 
     /// Units and bounds of the port hold for the member, too.
     fn take_attributes(&mut self, to: NodeId, from: NodeId) {
         match (self.instance.node(to).clone(), self.instance.node(from).clone()) {
-            (Node::Var(a), Node::Var(b)) => {
+            (InstanceNode::Var(a), InstanceNode::Var(b)) => {
                 self.instance.variables[a as usize].attributes = self.instance.variables[b as usize].attributes.clone();
                 self.instance.variables[a as usize].causality = None;
             }
-            (Node::Array { elements: a, .. }, Node::Array { elements: b, .. }) => {
+            (InstanceNode::Array { elements: a, .. }, InstanceNode::Array { elements: b, .. }) => {
                 for (a, b) in a.iter().zip(b.iter()) {
                     self.take_attributes(*a, *b);
                 }

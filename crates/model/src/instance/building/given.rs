@@ -1,8 +1,8 @@
 //! Values given from outside: texts that become modifiers of the model.
 
 use crate::instance::building::components::ModelRequest;
-use crate::instance::modifiers::{Access, Arg, Binding};
-use crate::instance::{ComponentBuilder, VarData, View};
+use crate::instance::modifiers::{AccessStep, Binding, Modifier};
+use crate::instance::{ComponentBuilder, InstanceVariable, LookupContext};
 use bramah_expr::types::Variability;
 use bramah_syntax::ast::{self};
 use bramah_syntax::diag::FileId;
@@ -11,7 +11,7 @@ use std::rc::Rc;
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Values from outside become one modification of the model, in a text of their own that messages can show.
-    pub(in crate::instance) fn override_args(&mut self, request: &ModelRequest) -> Rc<[Arg<'a>]> {
+    pub(in crate::instance) fn override_args(&mut self, request: &ModelRequest) -> Rc<[Modifier<'a>]> {
         if request.overrides.is_empty() {
             return Rc::from([]);
         }
@@ -43,8 +43,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             return Rc::from([]);
         };
         let Some(ast::ElementKind::Extends(e)) = body.elements.first().map(|e| &e.kind) else { return Rc::from([]) };
-        let view = View { scope: self.instance.root, base: 0 };
-        let none: Rc<[Access]> = Rc::from([]);
+        let view = LookupContext { scope: self.instance.root, base: 0 };
+        let none: Rc<[AccessStep]> = Rc::from([]);
         let values = body.elements[1..].iter().filter_map(|e| match &e.kind {
             ast::ElementKind::Component(c) => c.modification.as_ref()?.value.as_ref(),
             _ => None,
@@ -56,7 +56,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             self.instance.given_elements.push(GivenElement { name, binding, met: false });
         }
         let arguments = e.modification.iter().flat_map(|m| &m.arguments);
-        arguments.filter_map(|a| Arg::new(a, view, &none, true)).collect()
+        arguments.filter_map(|a| Modifier::new(a, view, &none, true)).collect()
     }
 
     /// The value given from outside for one element of an array.
@@ -85,8 +85,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 continue;
             }
             let array = name.rsplit_once('[').map_or("", |(array, _)| array);
-            let known = |i: &&VarData<'_>| i.variability <= Variability::Parameter && !i.hidden;
-            let of_array = |v: &&VarData<'_>| v.name.rsplit_once('[').is_some_and(|(a, _)| a == array);
+            let known = |i: &&InstanceVariable<'_>| i.variability <= Variability::Parameter && !i.hidden;
+            let of_array = |v: &&InstanceVariable<'_>| v.name.rsplit_once('[').is_some_and(|(a, _)| a == array);
             let mut elements = self.instance.variables.iter().filter(known).filter(of_array).map(|v| v.name.as_str());
             let help = match (elements.next(), elements.next_back()) {
                 (Some(first), Some(last)) => format!("its elements are `{first}` to `{last}`"),

@@ -1,13 +1,13 @@
 //! A component `FMU(file = "controller.fmu")`: its class is made of what the unit says of itself.
 
-use crate::instance::files::Place;
-use crate::instance::lookup::Found;
-use crate::instance::modifiers::{Arg, ArgKind};
-use crate::instance::value::Val;
-use crate::instance::{ClassRef, ComponentBuilder, Instance};
+use crate::instance::files::FileReference;
+use crate::instance::lookup::LookupResult;
+use crate::instance::modifiers::{Modifier, ModifierKind};
+use crate::instance::value::ModelicaValue;
+use crate::instance::{ClassRef, ComponentBuilder};
 use crate::resolve::ClassId;
-use bramah_external::mockup::MockUp;
-use bramah_external::{Given, Object};
+use bramah_external::mockup::ImportedFmu;
+use bramah_external::{ExternalObject, ExternalValue};
 use bramah_syntax::ast::Expr;
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::sync::Arc;
@@ -17,8 +17,8 @@ const NAME: &str = "FMU";
 const FILE: &str = "components/FMU.mo";
 
 /// A unit that was opened, with its class.
-pub(in crate::instance) struct Opened {
-    pub unit: Arc<MockUp>,
+pub(in crate::instance) struct FmuClass {
+    pub unit: Arc<ImportedFmu>,
     class: ClassId,
 }
 
@@ -26,13 +26,13 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// What a component's class is: for one of `FMU` that of its unit.
     pub(in crate::instance) fn with_unit(
         &mut self,
-        found: Found<'a>,
-        args: &[Arg<'a>],
+        found: LookupResult<'a>,
+        args: &[Modifier<'a>],
         declared: Span,
-    ) -> Option<Found<'a>> {
+    ) -> Option<LookupResult<'a>> {
         match found {
-            Found::Class(class) if self.stands_for_units(class.class) => {
-                self.class_of_unit(&class, args, declared).map(Found::Class)
+            LookupResult::Class(class) if self.stands_for_units(class.class) => {
+                self.class_of_unit(&class, args, declared).map(LookupResult::Class)
             }
             _ => Some(found),
         }
@@ -43,7 +43,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         name.name.as_str() == NAME && self.instance.library.sources.get(name.span.file).path == FILE
     }
 
-    fn class_of_unit(&mut self, found: &ClassRef<'a>, args: &[Arg<'a>], declared: Span) -> Option<ClassRef<'a>> {
+    fn class_of_unit(&mut self, found: &ClassRef<'a>, args: &[Modifier<'a>], declared: Span) -> Option<ClassRef<'a>> {
         let Some((file, at)) = self.text_given(args, "file")? else {
             let d = Diagnostic::new(Code::NoValue, "a component of class `FMU` needs the file of its unit");
             self.instance
@@ -56,9 +56,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// The value that modifications give to a text; inner `None` where they give none.
-    fn text_given(&mut self, args: &[Arg<'a>], name: &str) -> Option<Option<(String, Span)>> {
-        let value = |arg: &Arg<'a>| match arg.kind {
-            ArgKind::Modify([target], Some(m)) if target.name.as_str() == name => Some((m.value.as_ref()?, arg.view)),
+    fn text_given(&mut self, args: &[Modifier<'a>], name: &str) -> Option<Option<(String, Span)>> {
+        let value = |arg: &Modifier<'a>| match arg.kind {
+            ModifierKind::Modify([target], Some(m)) if target.name.as_str() == name => {
+                Some((m.value.as_ref()?, arg.view))
+            }
             _ => None,
         };
         let Some((expr, view)): Option<(&'a Expr, _)> = args.iter().find_map(value) else { return Some(None) };
@@ -70,7 +72,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// A unit by the name of its file and its kind, read and loaded at its first use.
-    pub(in crate::instance) fn opened(&mut self, file: &str, kind: &str, at: Span) -> Option<&Opened> {
+    pub(in crate::instance) fn opened(&mut self, file: &str, kind: &str, at: Span) -> Option<&FmuClass> {
         let key = (file.to_owned(), kind.to_owned());
         if !self.instance.units.contains_key(&key) {
             let bytes = match self.instance.library.bytes(file) {
@@ -83,7 +85,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                     return None;
                 }
             };
-            let unit = match MockUp::open(bytes, kind) {
+            let unit = match ImportedFmu::open(bytes, kind) {
                 Ok(unit) => Arc::new(unit),
                 Err(why) => {
                     let d = Diagnostic::new(Code::BadMockUp, format!("the unit `{file}` cannot be used: {why}"));
@@ -92,17 +94,21 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 }
             };
             let class = self.instance.library.generated(file, &unit.class())?;
-            self.instance.units.insert(key.clone(), Opened { unit, class });
+            self.instance.units.insert(key.clone(), FmuClass { unit, class });
         }
         self.instance.units.get(&key)
     }
 
     /// The object behind the equations of a component: its unit with the values of its texts.
-    pub(in crate::instance) fn mock_up(&mut self, given: &[Given], place: Place) -> Option<Val> {
-        let [Given::Text(file), Given::Text(kind), Given::Text(texts)] = given else {
+    pub(in crate::instance) fn mock_up(
+        &mut self,
+        given: &[ExternalValue],
+        place: FileReference,
+    ) -> Option<ModelicaValue> {
+        let [ExternalValue::Text(file), ExternalValue::Text(kind), ExternalValue::Text(texts)] = given else {
             return self.instance.fail(Code::NotConstant, "texts of a unit must be known before the run", place.call);
         };
         let unit = self.opened(file, kind, place.call)?.unit.clone();
-        Some(Val::Object(Object::MockUp(Arc::new(unit.pool(texts)))))
+        Some(ModelicaValue::Object(ExternalObject::MockUp(Arc::new(unit.pool(texts)))))
     }
 }

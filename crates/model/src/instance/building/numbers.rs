@@ -1,7 +1,7 @@
 //! Numbers of variables in the flat model, in declaration order.
 
-use crate::instance::template::Kind;
-use crate::instance::{ComponentBuilder, ElementState, Node, NodeId, ScopeId};
+use crate::instance::template::TemplateElementKind;
+use crate::instance::{ComponentBuilder, ElementState, InstanceNode, NodeId, ScopeId};
 use bramah_expr::VarId;
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
@@ -38,7 +38,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     pub(in crate::instance) fn number_scope(&mut self, scope: ScopeId, order: &mut Vec<u32>) {
         for i in 0..self.instance.scope(scope).elements.len() {
             let s = self.instance.scope(scope);
-            let outer = matches!(s.template.elements[i].kind, Kind::Component(c) if c.prefixes.outer);
+            let outer = matches!(s.template.elements[i].kind, TemplateElementKind::Component(c) if c.prefixes.outer);
             if let (ElementState::Node(node), false) = (&s.elements[i], outer) {
                 self.number_node(*node, order);
             }
@@ -47,9 +47,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 
     pub(in crate::instance) fn number_node(&mut self, node: NodeId, order: &mut Vec<u32>) {
         match self.instance.node(node) {
-            Node::Var(i) => self.number_variable(*i, order),
-            Node::Object(scope) => self.number_scope(*scope, order),
-            Node::Array { elements, .. } => {
+            InstanceNode::Var(i) => self.number_variable(*i, order),
+            InstanceNode::Object(scope) => self.number_scope(*scope, order),
+            InstanceNode::Array { elements, .. } => {
                 for &e in elements.clone().iter() {
                     self.number_node(e, order);
                 }

@@ -1,12 +1,12 @@
 //! `outer` components: the `inner` ones that they mean, made where there is none.
 
-use crate::instance::building::components::Plan;
-use crate::instance::lookup::{Builtin, Found};
-use crate::instance::modifiers::Reached;
-use crate::instance::template::Kind;
-use crate::instance::{ComponentBuilder, Inherited, Node, NodeId, ScopeId, View};
+use crate::instance::building::components::ComponentPlan;
+use crate::instance::lookup::{BuiltinType, LookupResult};
+use crate::instance::modifiers::ElementModifiers;
+use crate::instance::template::TemplateElementKind;
+use crate::instance::{ComponentBuilder, InheritedPrefixes, InstanceNode, LookupContext, NodeId, ScopeId};
 use crate::resolve::ClassId;
-use bramah_expr::types::Type;
+use bramah_expr::types::ScalarType;
 use bramah_syntax::ast::{self};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
@@ -15,8 +15,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     pub(in crate::instance) fn outer_component(
         &mut self,
         scope: ScopeId,
-        declared: &'a ast::Component,
-        view: View,
+        declared: &'a ast::ComponentDeclaration,
+        view: LookupContext,
     ) -> Option<NodeId> {
         let name = declared.name.name;
         if let Some(node) = self.instance.names().inner_of(scope, name) {
@@ -30,7 +30,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 .help(help)
         };
         let instance = self.instance.scope(scope).name.clone();
-        let Found::Class(class) = &found else {
+        let LookupResult::Class(class) = &found else {
             let ty = declared.class.dotted();
             self.instance.report(no_inner(instance, format!("add `inner {ty} {name} = ...;` to the model")));
             return None;
@@ -56,16 +56,16 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             None => made,
         });
         let root = self.instance.root;
-        let plan = Plan {
+        let plan = ComponentPlan {
             name: name.as_str().to_string(),
             scope: root,
             index: None,
             declared,
-            prefix: Inherited::default(),
+            prefix: InheritedPrefixes::default(),
             span: declared.name.span,
             depth: 0,
         };
-        let node = self.build_shaped(&plan, &found, &[], Reached::default())?;
+        let node = self.build_shaped(&plan, &found, &[], ElementModifiers::default())?;
         self.instance.inner_declared.insert((root, name), node);
         Some(node)
     }
@@ -77,9 +77,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         while let Some(owner) = at {
             let template = self.instance.scope(owner).template.clone();
             for element in &template.elements {
-                let Kind::Component(c) = element.kind else { continue };
-                let view = View { scope: owner, base: element.base };
-                let Ok(Found::Class(class)) = self.instance.names().lookup_path(view, &c.class) else { continue };
+                let TemplateElementKind::Component(c) = element.kind else { continue };
+                let view = LookupContext { scope: owner, base: element.base };
+                let Ok(LookupResult::Class(class)) = self.instance.names().lookup_path(view, &c.class) else {
+                    continue;
+                };
                 let template = self.instance.names().template(class.class, class.parent);
                 if c.prefixes.outer || template.bases.iter().all(|b| b.class != wanted) {
                     continue;
@@ -108,7 +110,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// An `outer` element is somebody else's and cannot be modified (MLS 5.4).
-    pub(in crate::instance) fn check_outer_unmodified(&mut self, scope: ScopeId, declared: &'a ast::Component) {
+    pub(in crate::instance) fn check_outer_unmodified(
+        &mut self,
+        scope: ScopeId,
+        declared: &'a ast::ComponentDeclaration,
+    ) {
         let name = declared.name.name;
         let given = self.instance.scope(scope).args.iter().find(|a| a.target() == name).map(|a| a.span);
         let own = declared.modification.as_ref().and_then(|m| m.value.as_ref()).map(|e| e.span);
@@ -126,31 +132,31 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     pub(in crate::instance) fn fits_outer_shape(
         &mut self,
         node: NodeId,
-        declared: &'a ast::Component,
-        view: View,
+        declared: &'a ast::ComponentDeclaration,
+        view: LookupContext,
     ) -> bool {
         let Some(dims) = self.dimensions(None, &declared.subscripts, view, None, 0) else { return false };
         let dims: Vec<usize> = dims.iter().map(|d| d.size).collect();
         let (have, first) = match self.instance.node(node) {
-            Node::Array { dims, elements, .. } => (dims.clone(), elements.first().copied()),
+            InstanceNode::Array { dims, elements, .. } => (dims.clone(), elements.first().copied()),
             _ => (Vec::new(), Some(node)),
         };
-        let Some(Node::Var(i)) = first.map(|n| self.instance.node(n).clone()) else { return true };
+        let Some(InstanceNode::Var(i)) = first.map(|n| self.instance.node(n).clone()) else { return true };
         let found = self.instance.names().lookup_path(view, &declared.class).ok();
         let builtin = match &found {
-            Some(Found::Builtin(b)) => Some(*b),
-            Some(Found::Class(c)) => self.instance.names().template(c.class, c.parent).builtin,
+            Some(LookupResult::Builtin(b)) => Some(*b),
+            Some(LookupResult::Class(c)) => self.instance.names().template(c.class, c.parent).builtin,
             _ => None,
         };
         let data = &self.instance.variables[i as usize];
         let same_type = match builtin {
-            Some(Builtin::Real) => data.ty == Type::Real,
-            Some(Builtin::Integer) => data.ty == Type::Integer,
-            Some(Builtin::Boolean) => data.ty == Type::Boolean,
-            Some(Builtin::Enumeration(e)) => data.ty == Type::Enumeration(e),
+            Some(BuiltinType::Real) => data.ty == ScalarType::Real,
+            Some(BuiltinType::Integer) => data.ty == ScalarType::Integer,
+            Some(BuiltinType::Boolean) => data.ty == ScalarType::Boolean,
+            Some(BuiltinType::Enumeration(e)) => data.ty == ScalarType::Enumeration(e),
             _ => true,
         };
-        let shaped = matches!(&found, Some(Found::Class(c)) if !self.instance.names().template(c.class, c.parent).dims.is_empty());
+        let shaped = matches!(&found, Some(LookupResult::Class(c)) if !self.instance.names().template(c.class, c.parent).dims.is_empty());
         if same_type && (shaped || have == dims) {
             return true;
         }
@@ -171,14 +177,21 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// Whether an `inner` component has what the class of the `outer` one promises (MLS 5.4).
-    pub(in crate::instance) fn fits_outer(&mut self, node: NodeId, declared: &'a ast::Component, view: View) -> bool {
-        let Node::Object(inner) = *self.instance.node(node) else { return self.fits_outer_shape(node, declared, view) };
+    pub(in crate::instance) fn fits_outer(
+        &mut self,
+        node: NodeId,
+        declared: &'a ast::ComponentDeclaration,
+        view: LookupContext,
+    ) -> bool {
+        let InstanceNode::Object(inner) = *self.instance.node(node) else {
+            return self.fits_outer_shape(node, declared, view);
+        };
         let key = (node, std::ptr::from_ref(declared));
         if let Some(&known) = self.instance.outer_checked.get(&key) {
             return known;
         }
         let mut fits = true;
-        if let Ok(Found::Class(want)) = self.instance.names().lookup_path(view, &declared.class) {
+        if let Ok(LookupResult::Class(want)) = self.instance.names().lookup_path(view, &declared.class) {
             let (want, have) =
                 (self.instance.names().template(want.class, want.parent), self.instance.scope(inner).template.clone());
             let missing = want.elements.iter().find(|e| !e.protected && !have.by_name.contains_key(&e.name));

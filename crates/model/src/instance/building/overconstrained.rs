@@ -3,11 +3,11 @@
 
 use crate::instance::algorithm::AlgorithmCall;
 use crate::instance::call::Callee;
-use crate::instance::lookup::Found;
-use crate::instance::template::{Kind, Template};
-use crate::instance::value::Val;
-use crate::instance::{ClassRef, ComponentBuilder, ElementState, Node, NodeId, View};
-use bramah_expr::types::Type;
+use crate::instance::lookup::LookupResult;
+use crate::instance::template::{Template, TemplateElementKind};
+use crate::instance::value::ModelicaValue;
+use crate::instance::{ClassRef, ComponentBuilder, ElementState, InstanceNode, LookupContext, NodeId};
+use bramah_expr::types::ScalarType;
 use bramah_expr::{ExprId, Exprs};
 use bramah_syntax::ast::{self, Expr, ExprKind};
 use bramah_syntax::diag::{Code, Span};
@@ -19,7 +19,7 @@ use rustc_hash::{FxBuildHasher, FxHashSet};
 const CONSTRAINT: &str = "equalityConstraint";
 
 /// The overconstrained components of a model, and what the network says of them.
-pub struct Overconstrained<'a> {
+pub struct OverconstrainedComponents<'a> {
     /// `equalityConstraint`
     name: Symbol,
     /// All of them, with the classes of those that are variables and arrays; records know theirs themselves.
@@ -31,16 +31,16 @@ pub struct Overconstrained<'a> {
 }
 
 /// When two overconstrained components are equal.
-pub struct Residue {
+pub struct EqualityResidue {
     /// All are zero.
     pub values: Vec<ExprId>,
     /// What must hold besides.
     pub asserts: Vec<AlgorithmCall>,
 }
 
-impl Default for Overconstrained<'_> {
+impl Default for OverconstrainedComponents<'_> {
     fn default() -> Self {
-        Overconstrained {
+        OverconstrainedComponents {
             name: Symbol::new(CONSTRAINT),
             nodes: IndexMap::default(),
             roots: FxHashSet::default(),
@@ -55,19 +55,19 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         &mut self,
         node: NodeId,
         one: bool,
-        found: &Found<'a>,
+        found: &LookupResult<'a>,
         template: &Template<'a>,
     ) {
         let at = template.by_name.get(&self.instance.overconstrained.name);
-        if !at.is_some_and(|&i| matches!(template.elements[i as usize].kind, Kind::Class(_))) {
+        if !at.is_some_and(|&i| matches!(template.elements[i as usize].kind, TemplateElementKind::Class(_))) {
             return;
         }
         let class = match found {
-            Found::Class(class) => template.builtin.map(|_| class.clone()),
+            LookupResult::Class(class) => template.builtin.map(|_| class.clone()),
             _ => None,
         };
         let nodes = match self.instance.node(node) {
-            Node::Array { elements, .. } if !one => elements.to_vec(),
+            InstanceNode::Array { elements, .. } if !one => elements.to_vec(),
             _ => vec![node],
         };
         for node in nodes {
@@ -84,20 +84,20 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     fn constraint_of(&mut self, node: NodeId) -> Option<ClassRef<'a>> {
         let name = self.instance.overconstrained.name;
         let found = match *self.instance.node(node) {
-            Node::Object(scope) => self.instance.names().lookup(View { scope, base: 0 }, name),
+            InstanceNode::Object(scope) => self.instance.names().lookup(LookupContext { scope, base: 0 }, name),
             _ => {
                 let class = self.instance.overconstrained.nodes.get(&node)?.clone()?;
-                self.instance.names().member(&Found::Class(class), name)
+                self.instance.names().member(&LookupResult::Class(class), name)
             }
         };
         match found {
-            Some(Found::Class(function)) => Some(function),
+            Some(LookupResult::Class(function)) => Some(function),
             _ => None,
         }
     }
 
     /// What holds where two overconstrained components are equal; `None` after a message.
-    pub fn constraint_residue(&mut self, a: NodeId, b: NodeId, span: Span) -> Option<Residue> {
+    pub fn constraint_residue(&mut self, a: NodeId, b: NodeId, span: Span) -> Option<EqualityResidue> {
         let function = self.constraint_of(a)?;
         let values =
             vec![self.instance.evaluator().node_value(a, span)?, self.instance.evaluator().node_value(b, span)?];
@@ -111,7 +111,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let asserts = self.instance.eval.calls.split_off(mark);
         let mut values = Vec::new();
         value?.scalars(&mut values);
-        Some(Residue { values, asserts })
+        Some(EqualityResidue { values, asserts })
     }
 
     /// The number of equations that equality of two such components means: the size of the function's output.
@@ -120,14 +120,16 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let template = self.instance.names().template(function.class, function.parent);
         let scope = self.instance.names().package(&function);
         let output = template.elements.iter().find_map(|e| match e.kind {
-            Kind::Component(c) if c.prefix.causality == Some(ast::Causality::Output) => Some((c, e.base)),
+            TemplateElementKind::Component(c) if c.prefix.causality == Some(ast::CausalityPrefix::Output) => {
+                Some((c, e.base))
+            }
             _ => None,
         });
         let (output, base) = output?;
         let mut size = 1;
         for s in &output.subscripts {
             let ast::Subscript::Expr(e) = s else { return None };
-            size *= self.instance.evaluator().dimension(e, View { scope, base })?;
+            size *= self.instance.evaluator().dimension(e, LookupContext { scope, base })?;
         }
         Some(size)
     }
@@ -147,9 +149,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 
     fn variables_of(&self, node: NodeId, found: &mut Vec<u32>) {
         match self.instance.node(node) {
-            Node::Var(i) => found.push(*i),
-            Node::Array { elements, .. } => elements.iter().for_each(|&e| self.variables_of(e, found)),
-            Node::Object(s) => {
+            InstanceNode::Var(i) => found.push(*i),
+            InstanceNode::Array { elements, .. } => elements.iter().for_each(|&e| self.variables_of(e, found)),
+            InstanceNode::Object(s) => {
                 for e in &self.instance.scope(*s).elements {
                     if let ElementState::Node(n) = e {
                         self.variables_of(*n, found);
@@ -164,20 +166,20 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         &mut self,
         name: &str,
         args: &'a [Expr],
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let [arg] = args else {
             return self.instance.fail(Code::BadCall, &format!("`{name}` takes one overconstrained component"), span);
         };
         let node = self.overconstrained_node(arg, view)?;
         let found = &self.instance.overconstrained;
         let holds = if name == "isRoot" { found.roots.contains(&node) } else { found.rooted.contains(&node) };
-        Some(Val::Scalar(if holds { Exprs::ONE } else { Exprs::ZERO }, Type::Boolean))
+        Some(ModelicaValue::Scalar(if holds { Exprs::ONE } else { Exprs::ZERO }, ScalarType::Boolean))
     }
 
     /// The overconstrained component that an argument names, or a message.
-    pub fn overconstrained_node(&mut self, e: &'a Expr, view: View) -> Option<NodeId> {
+    pub fn overconstrained_node(&mut self, e: &'a Expr, view: LookupContext) -> Option<NodeId> {
         let node = match &e.kind {
             ExprKind::Reference(r) => {
                 self.instance.evaluator().named_node(r, view).filter(|&n| self.is_overconstrained(n))

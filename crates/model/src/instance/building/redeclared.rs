@@ -1,8 +1,8 @@
 //! Redeclared components: what takes their place must be a subtype of what was declared.
 
-use crate::instance::lookup::Found;
-use crate::instance::modifiers::ArgKind;
-use crate::instance::{ComponentBuilder, View};
+use crate::instance::lookup::LookupResult;
+use crate::instance::modifiers::ModifierKind;
+use crate::instance::{ComponentBuilder, LookupContext};
 use bramah_syntax::ast::{self};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 
@@ -10,10 +10,10 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// A redeclared component must be of a class that fits the constraining one: here, it must offer its elements.
     pub(in crate::instance) fn check_redeclaration(
         &mut self,
-        declared: &'a ast::Component,
-        own: View,
-        component: &'a ast::Component,
-        found: &Found<'a>,
+        declared: &'a ast::ComponentDeclaration,
+        own: LookupContext,
+        component: &'a ast::ComponentDeclaration,
+        found: &LookupResult<'a>,
     ) {
         if std::ptr::eq(declared, component) {
             return;
@@ -30,7 +30,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             );
             return;
         }
-        if declared.prefix.variability == Some(ast::Variability::Constant) {
+        if declared.prefix.variability == Some(ast::VariabilityPrefix::Constant) {
             self.instance.report(
                 Diagnostic::new(
                     Code::BadRedeclare,
@@ -52,15 +52,15 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// to the one before (MLS 7.3).
     pub(in crate::instance) fn check_chain(
         &mut self,
-        declared: &'a ast::Component,
-        own: View,
-        all: &[(ArgKind<'a>, View)],
-        found: &Found<'a>,
+        declared: &'a ast::ComponentDeclaration,
+        own: LookupContext,
+        all: &[(ModifierKind<'a>, LookupContext)],
+        found: &LookupResult<'a>,
     ) {
-        let steps: Vec<(&'a ast::Component, View)> = all
+        let steps: Vec<(&'a ast::ComponentDeclaration, LookupContext)> = all
             .iter()
             .filter_map(|(kind, view)| match kind {
-                ArgKind::Component(c) => Some((*c, *view)),
+                ModifierKind::Component(c) => Some((*c, *view)),
                 _ => None,
             })
             .chain([(declared, own)])
@@ -98,12 +98,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Every public component of the constraining class must exist in the class that takes its place (MLS 6.4).
     pub(in crate::instance) fn check_subtype(
         &mut self,
-        constraint: &Found<'a>,
-        found: &Found<'a>,
+        constraint: &LookupResult<'a>,
+        found: &LookupResult<'a>,
         at: Span,
         constrained: Span,
     ) -> bool {
-        let (Found::Class(want), Found::Class(have)) = (constraint, found) else { return true };
+        let (LookupResult::Class(want), LookupResult::Class(have)) = (constraint, found) else { return true };
         let want = self.instance.names().template(want.class, want.parent);
         let have = self.instance.names().template(have.class, have.parent);
         if have.broken || want.broken {

@@ -2,25 +2,25 @@
 //! each class once, when it is first used.
 
 use crate::instance::ComponentBuilder;
-use crate::instance::lookup::Builtin;
+use crate::instance::lookup::BuiltinType;
 use crate::resolve::ClassId;
 use bramah_syntax::ast::{
-    self, Argument, ArgumentKind, ClassBody, ClassKind, ElementKind, Expr, ExprKind, Import, Modification, Statement,
-    StatementKind, Variability,
+    self, ClassBody, ClassKind, ElementKind, Expr, ExprKind, Import, Modification, ModificationArgument,
+    ModificationArgumentKind, Statement, StatementKind, VariabilityPrefix,
 };
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
 /// A rule that does not hold: what, where, why, and its place in the language specification.
-struct Breach {
+struct RestrictionViolation {
     what: String,
     at: Span,
     label: String,
     rule: &'static str,
 }
 
-fn breach(what: impl Into<String>, at: Span, label: impl Into<String>, rule: &'static str) -> Breach {
-    Breach { what: what.into(), at, label: label.into(), rule }
+fn breach(what: impl Into<String>, at: Span, label: impl Into<String>, rule: &'static str) -> RestrictionViolation {
+    RestrictionViolation { what: what.into(), at, label: label.into(), rule }
 }
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
@@ -50,7 +50,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    fn refuse(&mut self, b: Breach, class: Option<ClassId>) {
+    fn refuse(&mut self, b: RestrictionViolation, class: Option<ClassId>) {
         if self
             .instance
             .diagnostics
@@ -86,10 +86,10 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// Only types and connectors extend a predefined type.
-    pub(in crate::instance) fn check_builtin_base(&mut self, class: ClassId, base: Builtin, at: Span) {
+    pub(in crate::instance) fn check_builtin_base(&mut self, class: ClassId, base: BuiltinType, at: Span) {
         let kind = self.instance.library.class(class).kind;
-        let fine =
-            matches!(kind, ClassKind::Type | ClassKind::Connector { .. } | ClassKind::Class) || base == Builtin::Object;
+        let fine = matches!(kind, ClassKind::Type | ClassKind::Connector { .. } | ClassKind::Class)
+            || base == BuiltinType::Object;
         if !fine {
             let name = crate::instance::errors::builtin_name(base);
             let what = format!("a {} cannot extend `{name}`", kind.word());
@@ -106,7 +106,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Prefixes of a component whose class is a model or block, or of a connector (MLS 4.4.2, 4.4.4).
     pub(in crate::instance) fn check_prefixes(
         &mut self,
-        declared: &ast::Component,
+        declared: &ast::ComponentDeclaration,
         template: &crate::instance::template::Template<'a>,
     ) {
         let p = declared.prefix;
@@ -139,11 +139,15 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 
     /// `flow`, `input` and `output` of a structure may not meet the same inside it (MLS 4.4.2.2).
-    fn check_nested_prefixes(&mut self, declared: &ast::Component, template: &crate::instance::template::Template<'a>) {
+    fn check_nested_prefixes(
+        &mut self,
+        declared: &ast::ComponentDeclaration,
+        template: &crate::instance::template::Template<'a>,
+    ) {
         let p = declared.prefix;
         let causal = p.causality.or(template.prefix.causality).is_some();
         for element in &template.elements {
-            let crate::instance::template::Kind::Component(inner) = element.kind else { continue };
+            let crate::instance::template::TemplateElementKind::Component(inner) = element.kind else { continue };
             let flow = p.flow && inner.prefix.flow;
             if flow || causal && inner.prefix.causality.is_some() {
                 let word = if flow { "flow" } else { "input` or `output" };
@@ -158,12 +162,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// A block has inputs and outputs only (MLS 4.6).
     pub(in crate::instance) fn check_block_port(
         &mut self,
-        declared: &ast::Component,
+        declared: &ast::ComponentDeclaration,
         template: &crate::instance::template::Template<'a>,
     ) {
-        let directed = |c: &ast::Component| {
+        let directed = |c: &ast::ComponentDeclaration| {
             c.prefix.causality.is_some()
-                || matches!(c.prefix.variability, Some(Variability::Parameter | Variability::Constant))
+                || matches!(c.prefix.variability, Some(VariabilityPrefix::Parameter | VariabilityPrefix::Constant))
         };
         let directed_itself = declared.prefix.causality.is_some() || template.prefix.causality.is_some();
         // what joins a bus gives its members their directions (MLS 9.1.3)
@@ -171,7 +175,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             return;
         }
         let open = template.elements.iter().find_map(|e| match e.kind {
-            crate::instance::template::Kind::Component(c) if is_open(c) && !directed(c) => Some(c.name.name),
+            crate::instance::template::TemplateElementKind::Component(c) if is_open(c) && !directed(c) => {
+                Some(c.name.name)
+            }
             _ => None,
         });
         if let Some(open) = open {
@@ -183,7 +189,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 }
 
 /// Whether a member of a connector is a plain variable.
-fn is_open(c: &ast::Component) -> bool {
+fn is_open(c: &ast::ComponentDeclaration) -> bool {
     c.class.parts.len() == 1 && matches!(c.class.parts[0].name.as_str(), "Real" | "Integer" | "Boolean" | "String")
 }
 
@@ -209,17 +215,17 @@ fn prefix_word(p: ast::TypePrefix) -> Option<&'static str> {
     match (p.flow, p.stream, p.variability, p.causality) {
         (true, ..) => Some("flow"),
         (_, true, ..) => Some("stream"),
-        (_, _, Some(Variability::Constant), _) => Some("constant"),
-        (_, _, Some(Variability::Parameter), _) => Some("parameter"),
-        (_, _, Some(Variability::Discrete), _) => Some("discrete"),
-        (_, _, _, Some(ast::Causality::Input)) => Some("input"),
-        (_, _, _, Some(ast::Causality::Output)) => Some("output"),
+        (_, _, Some(VariabilityPrefix::Constant), _) => Some("constant"),
+        (_, _, Some(VariabilityPrefix::Parameter), _) => Some("parameter"),
+        (_, _, Some(VariabilityPrefix::Discrete), _) => Some("discrete"),
+        (_, _, _, Some(ast::CausalityPrefix::Input)) => Some("input"),
+        (_, _, _, Some(ast::CausalityPrefix::Output)) => Some("output"),
         _ => None,
     }
 }
 
 /// Names of predefined types are taken (MLS 4.9), those of attributes are no literals (MLS 4.9.5).
-fn names(class: &ast::Class, found: &mut Vec<Breach>) {
+fn names(class: &ast::Class, found: &mut Vec<RestrictionViolation>) {
     let taken = |name: Symbol| matches!(name.as_str(), "Real" | "Integer" | "Boolean" | "String");
     if taken(class.name.name) {
         let what = format!("`{}` is a predefined type and cannot name a class", class.name.name);
@@ -245,7 +251,7 @@ fn names(class: &ast::Class, found: &mut Vec<Breach>) {
 }
 
 /// Sections that a kind of class does not have (MLS 4.6).
-fn sections(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Breach>) {
+fn sections(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<RestrictionViolation>) {
     let first_equation = body.equations.first().or(body.initial_equations.first()).map(|e| e.span);
     let algorithm = |sections: &[Vec<Statement>]| sections.first().and_then(|s| s.first()).map(|s| s.span);
     let first_statement = algorithm(&body.algorithms).or_else(|| algorithm(&body.initial_algorithms));
@@ -265,7 +271,7 @@ fn sections(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Breach>) {
 }
 
 /// Elements that a kind of class does not have (MLS 4.6), and `time` where nothing runs.
-fn elements(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Breach>) {
+fn elements(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<RestrictionViolation>) {
     let kind = class.kind.word();
     let structure = matches!(class.kind, ClassKind::Record { .. } | ClassKind::Connector { .. });
     let timeless = structure || matches!(class.kind, ClassKind::Package);
@@ -334,7 +340,7 @@ fn time_in_statement(s: &Statement) -> Option<Span> {
 }
 
 /// `break` leaves a loop (MLS 11.2.6), and a `when` stands in no other (MLS 11.2.7).
-fn statements(list: &[Statement], in_loop: bool, in_when: bool, found: &mut Vec<Breach>) {
+fn statements(list: &[Statement], in_loop: bool, in_when: bool, found: &mut Vec<RestrictionViolation>) {
     for s in list {
         match &s.kind {
             StatementKind::Break if !in_loop => {
@@ -357,7 +363,7 @@ fn statements(list: &[Statement], in_loop: bool, in_when: bool, found: &mut Vec<
 }
 
 /// One name is imported once (MLS 13.2.1).
-fn imports(body: &ast::LongBody, found: &mut Vec<Breach>) {
+fn imports(body: &ast::LongBody, found: &mut Vec<RestrictionViolation>) {
     let mut known: Vec<Symbol> = Vec::new();
     for e in &body.elements {
         let ElementKind::Import(Import::Single { alias, path }) = &e.kind else { continue };
@@ -371,7 +377,7 @@ fn imports(body: &ast::LongBody, found: &mut Vec<Breach>) {
 }
 
 /// No two arguments of a modification give the same thing a value (MLS 7.2).
-fn duplicates(arguments: &[Argument], found: &mut Vec<Breach>) {
+fn duplicates(arguments: &[ModificationArgument], found: &mut Vec<RestrictionViolation>) {
     let mut given: Vec<(String, Span)> = Vec::new();
     leaves(arguments, "", &mut given);
     for (k, (name, at)) in given.iter().enumerate() {
@@ -382,9 +388,9 @@ fn duplicates(arguments: &[Argument], found: &mut Vec<Breach>) {
 }
 
 /// The full names of all that an argument list gives values.
-fn leaves(arguments: &[Argument], around: &str, given: &mut Vec<(String, Span)>) {
+fn leaves(arguments: &[ModificationArgument], around: &str, given: &mut Vec<(String, Span)>) {
     for a in arguments {
-        let ArgumentKind::Modify { path, modification: Some(m), .. } = &a.kind else { continue };
+        let ModificationArgumentKind::Modify { path, modification: Some(m), .. } = &a.kind else { continue };
         let name = format!("{around}{}", path.dotted());
         let Modification { arguments, value, .. } = m;
         if value.is_some() {

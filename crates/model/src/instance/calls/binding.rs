@@ -1,12 +1,12 @@
 //! Arguments bound to the inputs of a function or the fields of a record, with defaults and checks.
 
-use crate::instance::call::{Callee, Formal};
-use crate::instance::lookup::{Builtin, Found};
-use crate::instance::template::Kind;
-use crate::instance::value::Val;
-use crate::instance::{ClassRef, FunctionCalls, Instance, View};
-use bramah_expr::types::Type;
-use bramah_syntax::ast::{self, Causality, ClassKind, Ident};
+use crate::instance::call::{Callee, FormalParameter};
+use crate::instance::lookup::{BuiltinType, LookupResult};
+use crate::instance::template::TemplateElementKind;
+use crate::instance::value::ModelicaValue;
+use crate::instance::{ClassRef, FunctionCalls, Instance, LookupContext};
+use bramah_expr::types::ScalarType;
+use bramah_syntax::ast::{self, CausalityPrefix, ClassKind, Ident};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
@@ -15,13 +15,16 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     pub(in crate::instance) fn formals(
         &self,
         callee: &Callee<'a>,
-        wanted: impl Fn(&ast::Component, bool) -> bool,
-    ) -> Vec<Formal<'a>> {
+        wanted: impl Fn(&ast::ComponentDeclaration, bool) -> bool,
+    ) -> Vec<FormalParameter<'a>> {
         let with_index = (0u32..).zip(&callee.template.elements);
         let found = with_index.filter_map(|(index, e)| match e.kind {
-            Kind::Component(component) if wanted(component, e.protected) => {
-                Some(Formal { name: e.name, component, index, view: View { scope: callee.scope, base: e.base } })
-            }
+            TemplateElementKind::Component(component) if wanted(component, e.protected) => Some(FormalParameter {
+                name: e.name,
+                component,
+                index,
+                view: LookupContext { scope: callee.scope, base: e.base },
+            }),
             _ => None,
         });
         found.collect()
@@ -31,8 +34,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     pub(in crate::instance) fn with_inputs<T>(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
         f: impl FnOnce(&mut Instance<'a, '_>) -> Option<T>,
     ) -> Option<T> {
@@ -44,9 +47,9 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     pub(in crate::instance) fn bind(
         &mut self,
         callee: &Callee<'a>,
-        formals: &[Formal<'a>],
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        formals: &[FormalParameter<'a>],
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
     ) -> Option<()> {
         if positional.len() > formals.len() {
@@ -71,7 +74,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                 positional.next().or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v.clone()));
             let given_here = given.is_some();
             let value = match given {
-                Some(v @ Val::Function(..)) if self.is_functional(f) => v,
+                Some(v @ ModelicaValue::Function(..)) if self.is_functional(f) => v,
                 Some(v) => self.fit_argument(callee, f, v, span)?,
                 None => match self.default_value(f)? {
                     Some(v) => v,
@@ -96,7 +99,13 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     }
 
     /// A number given to an input must lie within the bounds of its declaration; reported once however often it is called.
-    pub(in crate::instance) fn check_bounds(&mut self, callee: &Callee<'a>, f: &Formal<'a>, value: &Val, span: Span) {
+    pub(in crate::instance) fn check_bounds(
+        &mut self,
+        callee: &Callee<'a>,
+        f: &FormalParameter<'a>,
+        value: &ModelicaValue,
+        span: Span,
+    ) {
         let Some(x) = value.as_number(&self.instance.exprs) else { return };
         let bound = match (declared_number(f.component, "min"), declared_number(f.component, "max")) {
             (Some(low), _) if x < low => format!("less than its `min`, {low}"),
@@ -118,13 +127,13 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     pub(in crate::instance) fn fit_argument(
         &mut self,
         callee: &Callee<'a>,
-        f: &Formal<'a>,
-        value: Val,
+        f: &FormalParameter<'a>,
+        value: ModelicaValue,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let wanted = match self.instance.names().class_at(f.view, &f.component.class)? {
-            Found::Builtin(b) => Some(b),
-            Found::Class(c) => {
+            LookupResult::Builtin(b) => Some(b),
+            LookupResult::Class(c) => {
                 let t = self.instance.names().template(c.class, c.parent);
                 if matches!(t.kind, ClassKind::Function { .. }) {
                     let message = format!(
@@ -137,7 +146,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                 }
                 if t.dims.is_empty() { t.builtin } else { None }
             }
-            Found::Component(..) => None,
+            LookupResult::Component(..) => None,
         };
         let Some(b) = wanted else { return Some(value) };
         let declared = f.component.subscripts.len();
@@ -152,11 +161,13 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             return self.instance.fail(Code::BadCall, &message, span);
         }
         let fits = match (b, value.element_type()) {
-            (Builtin::Real, Some(Type::Real | Type::Integer)) => true,
-            (Builtin::Integer, Some(Type::Integer)) | (Builtin::Boolean, Some(Type::Boolean)) => true,
-            (Builtin::Enumeration(a), Some(Type::Enumeration(b))) => a == b,
-            (Builtin::Object, _) => matches!(value, Val::Object(_)),
-            (Builtin::String, _) => matches!(value.elements().first(), Some(Val::Text(_)) | None),
+            (BuiltinType::Real, Some(ScalarType::Real | ScalarType::Integer)) => true,
+            (BuiltinType::Integer, Some(ScalarType::Integer)) | (BuiltinType::Boolean, Some(ScalarType::Boolean)) => {
+                true
+            }
+            (BuiltinType::Enumeration(a), Some(ScalarType::Enumeration(b))) => a == b,
+            (BuiltinType::Object, _) => matches!(value, ModelicaValue::Object(_)),
+            (BuiltinType::String, _) => matches!(value.elements().first(), Some(ModelicaValue::Text(_)) | None),
             (_, None) => value.elements().is_empty(),
             _ => false,
         };
@@ -170,11 +181,11 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             );
             return self.instance.fail(Code::BadCall, &message, span);
         }
-        Some(if b == Builtin::Real { value.with_type(Type::Real) } else { value })
+        Some(if b == BuiltinType::Real { value.with_type(ScalarType::Real) } else { value })
     }
 
     /// The declared default: `None` on failure, `Some(None)` when there is none.
-    pub(in crate::instance) fn default_value(&mut self, f: &Formal<'a>) -> Option<Option<Val>> {
+    pub(in crate::instance) fn default_value(&mut self, f: &FormalParameter<'a>) -> Option<Option<ModelicaValue>> {
         let reached = self.instance.names().reached(f.view.scope, f.index);
         match reached.binding {
             Some(b) => {
@@ -188,13 +199,13 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             }
             None => match self.instance.names().class_at(f.view, &f.component.class)? {
                 // A record without a value takes its fields' defaults.
-                Found::Class(c) if f.component.subscripts.is_empty() => self.default_record(&c),
+                LookupResult::Class(c) if f.component.subscripts.is_empty() => self.default_record(&c),
                 _ => Some(None),
             },
         }
     }
 
-    pub(in crate::instance) fn default_record(&mut self, class: &ClassRef<'a>) -> Option<Option<Val>> {
+    pub(in crate::instance) fn default_record(&mut self, class: &ClassRef<'a>) -> Option<Option<ModelicaValue>> {
         let template = self.instance.names().template(class.class, class.parent);
         if !matches!(template.kind, ClassKind::Record { .. }) {
             return Some(None);
@@ -213,10 +224,12 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
 }
 
 /// An attribute that is written as a number.
-pub(in crate::instance) fn declared_number(component: &ast::Component, attribute: &str) -> Option<f64> {
+pub(in crate::instance) fn declared_number(component: &ast::ComponentDeclaration, attribute: &str) -> Option<f64> {
     let arguments = &component.modification.as_ref()?.arguments;
     let value = arguments.iter().find_map(|argument| match &argument.kind {
-        ast::ArgumentKind::Modify { path, modification, .. } if path.parts[0].name.as_str() == attribute => {
+        ast::ModificationArgumentKind::Modify { path, modification, .. }
+            if path.parts[0].name.as_str() == attribute =>
+        {
             modification.as_ref()?.value.as_ref()
         }
         _ => None,
@@ -224,6 +237,6 @@ pub(in crate::instance) fn declared_number(component: &ast::Component, attribute
     value?.as_number()
 }
 
-pub(in crate::instance) fn is_input(c: &ast::Component, protected: bool) -> bool {
-    !protected && c.prefix.causality == Some(Causality::Input)
+pub(in crate::instance) fn is_input(c: &ast::ComponentDeclaration, protected: bool) -> bool {
+    !protected && c.prefix.causality == Some(CausalityPrefix::Input)
 }

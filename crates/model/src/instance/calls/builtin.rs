@@ -1,32 +1,32 @@
 //! Built-in operators and functions (MLS 3.7, 10.3).
 
-use crate::instance::value::{Val, size_text, wider};
-use crate::instance::{BuiltinCalls, View};
-use bramah_expr::differentiate::Leaf;
-use bramah_expr::types::{MessagePart, Type, Variability};
-use bramah_expr::{Binary, ExprId, Exprs, Node, Rel, Unary};
-use bramah_syntax::ast::{Expr, ExprKind, Ident, Reference};
+use crate::instance::value::{ModelicaValue, size_text, wider};
+use crate::instance::{BuiltinCalls, LookupContext};
+use bramah_expr::differentiate::DerivativeLeaf;
+use bramah_expr::types::{MessagePart, ScalarType, Variability};
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction};
+use bramah_syntax::ast::{ComponentReference, Expr, ExprKind, Ident};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
 /// Mathematical functions of one argument.
-fn mathematical(name: &str) -> Option<Unary> {
+fn mathematical(name: &str) -> Option<UnaryFunction> {
     Some(match name {
-        "abs" => Unary::Abs,
-        "sign" => Unary::Sign,
-        "sqrt" => Unary::Sqrt,
-        "exp" => Unary::Exp,
-        "log" => Unary::Log,
-        "log10" => Unary::Log10,
-        "sin" => Unary::Sin,
-        "cos" => Unary::Cos,
-        "tan" => Unary::Tan,
-        "asin" => Unary::Asin,
-        "acos" => Unary::Acos,
-        "atan" => Unary::Atan,
-        "sinh" => Unary::Sinh,
-        "cosh" => Unary::Cosh,
-        "tanh" => Unary::Tanh,
+        "abs" => UnaryFunction::Abs,
+        "sign" => UnaryFunction::Sign,
+        "sqrt" => UnaryFunction::Sqrt,
+        "exp" => UnaryFunction::Exp,
+        "log" => UnaryFunction::Log,
+        "log10" => UnaryFunction::Log10,
+        "sin" => UnaryFunction::Sin,
+        "cos" => UnaryFunction::Cos,
+        "tan" => UnaryFunction::Tan,
+        "asin" => UnaryFunction::Asin,
+        "acos" => UnaryFunction::Acos,
+        "atan" => UnaryFunction::Atan,
+        "sinh" => UnaryFunction::Sinh,
+        "cosh" => UnaryFunction::Cosh,
+        "tanh" => UnaryFunction::Tanh,
         _ => return None,
     })
 }
@@ -65,12 +65,12 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     /// A built-in function; `None` if the name is not one, `Some(None)` after a message.
     pub(in crate::instance) fn builtin_call(
         &mut self,
-        function: &'a Reference,
+        function: &'a ComponentReference,
         args: &'a [Expr],
         named: &'a [(Ident, Expr)],
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Option<Val>> {
+    ) -> Option<Option<ModelicaValue>> {
         if let [package, query] = function.parts.as_slice() {
             return match (package.name.name.as_str(), query.name.name.as_str()) {
                 ("Connections", name @ ("isRoot" | "rooted")) => {
@@ -128,12 +128,12 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     /// The value of a call by the name of its function; `None` if that is not built in.
     fn builtin_value(
         &mut self,
-        function: &'a Reference,
+        function: &'a ComponentReference,
         args: &'a [Expr],
         named: &'a [(Ident, Expr)],
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Option<Val>> {
+    ) -> Option<Option<ModelicaValue>> {
         let name = function.parts[0].name.name.as_str();
         Some(match name {
             "der" => self.one(name, args, view, span).and_then(|v| self.der(&v, span)),
@@ -144,11 +144,11 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                 value.and_then(|v| self.pre(&v, span))
             }
             "edge" | "change" => self.one(name, args, view, span).and_then(|v| self.changes(name, &v, span)),
-            "initial" => self.moment(Node::Initial, span),
-            "terminal" => self.moment(Node::Terminal, span),
+            "initial" => self.moment(ExprNode::Initial, span),
+            "terminal" => self.moment(ExprNode::Terminal, span),
             "sample" => self.sample(args, view, span),
             "inStream" | "actualStream" => self.stream(name, args, view, span),
-            "getInstanceName" => Some(Val::text(self.instance_name(view))),
+            "getInstanceName" => Some(ModelicaValue::text(self.instance_name(view))),
             "delay" => self.delay(args, view, span),
             "homotopy" => self.homotopy_call(args, named, view, span),
             "semiLinear" => self.semi_linear(args, view, span),
@@ -160,7 +160,9 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                 self.reduction(function, values, span)
             }),
             "min" | "max" => self.extremum(function, args, view, span),
-            "atan2" => self.two(name, args, view, span).and_then(|(a, b)| self.real_pair(Binary::Atan2, &a, &b, span)),
+            "atan2" => {
+                self.two(name, args, view, span).and_then(|(a, b)| self.real_pair(BinaryFunction::Atan2, &a, &b, span))
+            }
             "div" | "mod" | "rem" => {
                 self.two(name, args, view, span).and_then(|(a, b)| self.division(name, &a, &b, span))
             }
@@ -183,16 +185,16 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         name: &str,
         args: &'a [Expr],
         named: &'a [(Ident, Expr)],
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let args = match named {
             [(_, only)] if args.is_empty() => std::slice::from_ref(only),
             _ => args,
         };
         if name == "atan2" {
             let (a, b) = self.two(name, args, view, span)?;
-            return self.real_pair(Binary::Atan2, &a, &b, span);
+            return self.real_pair(BinaryFunction::Atan2, &a, &b, span);
         }
         match mathematical(name) {
             Some(op) => self.one(name, args, view, span).and_then(|v| self.mathematics(op, &v, span)),
@@ -204,7 +206,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     }
 
     /// `cardinality(c)`: the number of connections of a port (MLS 3.7.4.3).
-    fn cardinality(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn cardinality(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let node = match args {
             [Expr { kind: ExprKind::Reference(r), .. }] => self.instance.evaluator().named_node(r, view),
             _ => None,
@@ -214,14 +216,20 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(self.instance.evaluator().integer(f64::from(count)))
     }
 
-    fn one(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn one(&mut self, name: &str, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         match args {
             [a] => self.instance.evaluator().eval(a, view),
             _ => self.instance.fail(Code::BadCall, &format!("`{name}` takes one argument, not {}", args.len()), span),
         }
     }
 
-    fn two(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<(Val, Val)> {
+    fn two(
+        &mut self,
+        name: &str,
+        args: &'a [Expr],
+        view: LookupContext,
+        span: Span,
+    ) -> Option<(ModelicaValue, ModelicaValue)> {
         match args {
             [a, b] => {
                 let (a, b) = (self.instance.evaluator().eval(a, view), self.instance.evaluator().eval(b, view));
@@ -231,26 +239,32 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    fn without_events(&mut self, arg: Option<&'a Expr>, name: &str, view: View, span: Span) -> Option<Val> {
+    fn without_events(
+        &mut self,
+        arg: Option<&'a Expr>,
+        name: &str,
+        view: LookupContext,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         let Some(arg) = arg else {
             return self.instance.fail(Code::BadCall, &format!("`{name}` needs an expression"), span);
         };
         self.instance.in_mode(|m| m.no_event = true, |s| s.evaluator().eval(arg, view))
     }
 
-    fn moment(&mut self, node: Node, span: Span) -> Option<Val> {
+    fn moment(&mut self, node: ExprNode, span: Span) -> Option<ModelicaValue> {
         if self.instance.eval.mode.constant {
             return self.instance.fail(Code::NotConstant, "this is not known before the run", span);
         }
-        Some(Val::Scalar(self.instance.exprs.intern(node), Type::Boolean))
+        Some(ModelicaValue::Scalar(self.instance.exprs.intern(node), ScalarType::Boolean))
     }
 
     /// `der` of any expression, by the chain rule where it is not a plain variable.
-    fn der(&mut self, v: &Val, span: Span) -> Option<Val> {
+    fn der(&mut self, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         if self.instance.eval.mode.constant {
             return self.instance.fail(Code::NotConstant, "a derivative is not known before the run", span);
         }
-        if matches!(v.element_type(), Some(ty) if ty != Type::Real) {
+        if matches!(v.element_type(), Some(ty) if ty != ScalarType::Real) {
             return self.instance.fail(
                 Code::TypeMismatch,
                 "only a Real has a derivative, and this has no derivative",
@@ -268,7 +282,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         if failed {
             return self.instance.fail(Code::TypeMismatch, "this changes at events only and has no derivative", span);
         }
-        Some(value.with_type(Type::Real))
+        Some(value.with_type(ScalarType::Real))
     }
 
     fn der_scalar(&mut self, e: ExprId) -> Option<ExprId> {
@@ -276,22 +290,22 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         self.instance.variability(e);
         let mut pool = std::mem::take(&mut self.instance.exprs);
         let result = pool.time_derivative(e, &mut |pool, leaf| match leaf {
-            Leaf::Var(v) => match self.instance.leaf_variability(v) {
+            DerivativeLeaf::Var(v) => match self.instance.leaf_variability(v) {
                 Variability::Continuous => Some(pool.der(v)),
                 Variability::Discrete => None,
                 _ => Some(Exprs::ZERO),
             },
-            Leaf::Der(_) => None,
+            DerivativeLeaf::Der(_) => None,
         });
         self.instance.exprs = pool;
         result.ok()
     }
 
-    fn pre(&mut self, v: &Val, span: Span) -> Option<Val> {
+    fn pre(&mut self, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         let mut failed = self.instance.eval.mode.constant;
         let value = v.map(&mut |e, _| match self.instance.exprs.node(e) {
-            Node::Var(var) => self.instance.exprs.pre(var),
-            Node::Num(_) => e,
+            ExprNode::Var(var) => self.instance.exprs.pre(var),
+            ExprNode::Num(_) => e,
             _ => {
                 failed = true;
                 e
@@ -303,7 +317,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(value)
     }
 
-    fn changes(&mut self, name: &str, v: &Val, span: Span) -> Option<Val> {
+    fn changes(&mut self, name: &str, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         let before = self.pre(v, span)?;
         let value = if name == "edge" {
             v.zip(&before, &mut |now, pre, _| {
@@ -311,12 +325,12 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                 self.instance.exprs.and(now, was_not)
             })
         } else {
-            v.zip(&before, &mut |now, pre, _| self.instance.exprs.rel(Rel::Ne, now, pre))
+            v.zip(&before, &mut |now, pre, _| self.instance.exprs.rel(RelationalOp::Ne, now, pre))
         };
-        value.map(|v| retyped(&v, Type::Boolean))
+        value.map(|v| retyped(&v, ScalarType::Boolean))
     }
 
-    fn sample(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn sample(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let (start, interval) = self.two("sample", args, view, span)?;
         let (Some((s, _)), Some((i, _))) = (start.scalar(), interval.scalar()) else {
             return self.instance.evaluator().wrong_type("a number", &start, span);
@@ -334,11 +348,11 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         if self.instance.eval.mode.constant {
             return self.instance.fail(Code::NotConstant, "`sample` is not known before the run", span);
         }
-        Some(Val::Scalar(self.instance.exprs.sample(s, i), Type::Boolean))
+        Some(ModelicaValue::Scalar(self.instance.exprs.sample(s, i), ScalarType::Boolean))
     }
 
     /// The simple name of the model that runs, and the components from it to the place of the call (MLS 3.7.4.3).
-    fn instance_name(&self, view: View) -> String {
+    fn instance_name(&self, view: LookupContext) -> String {
         let model = self.instance.library.class(self.instance.scope(self.instance.root).template.class).name.name;
         match self.instance.scope(view.scope).name.as_str() {
             "" => model.to_string(),
@@ -347,7 +361,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     }
 
     /// `inStream(h)`, `actualStream(h)`, `Connections.inflow(h)`.
-    fn stream(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn stream(&mut self, name: &str, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let value = self.one(name, args, view, span)?;
         if self.instance.eval.mode.constant {
             return self.instance.fail(Code::NotConstant, "this is not known before the run", span);
@@ -357,7 +371,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         let mut results = Vec::with_capacity(scalars.len());
         for e in scalars {
             let found = match self.instance.exprs.node(e) {
-                Node::Var(v) => self.instance.order.get(v.index()).copied(),
+                ExprNode::Var(v) => self.instance.order.get(v.index()).copied(),
                 _ => None,
             };
             let flow = found
@@ -381,7 +395,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     }
 
     /// `delay(expression, time)`; the largest time as a third argument says nothing that a fixed time does not.
-    fn delay(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn delay(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let ([delayed, time] | [delayed, time, _]) = args else {
             return self.instance.fail(Code::BadCall, "`delay` takes an expression and a time", span);
         };
@@ -407,10 +421,16 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         if self.instance.exprs.as_num(time).is_some_and(|t| t <= 0.0) {
             return self.instance.fail(Code::OutOfRange, "the time of `delay` must be positive", span);
         }
-        Some(delayed.map(&mut |e, _| self.instance.exprs.delay(e, time)).with_type(Type::Real))
+        Some(delayed.map(&mut |e, _| self.instance.exprs.delay(e, time)).with_type(ScalarType::Real))
     }
 
-    fn homotopy_call(&mut self, args: &'a [Expr], named: &'a [(Ident, Expr)], view: View, span: Span) -> Option<Val> {
+    fn homotopy_call(
+        &mut self,
+        args: &'a [Expr],
+        named: &'a [(Ident, Expr)],
+        view: LookupContext,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         let by_name = |n: &str| named.iter().find(|(i, _)| i.name == n).map(|(_, e)| e);
         let actual = args.first().or_else(|| by_name("actual"));
         let simplified = args.get(1).or_else(|| by_name("simplified"));
@@ -423,7 +443,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     }
 
     /// `semiLinear(x, k+, k-) = if x >= 0 then k+*x else k-*x`
-    fn semi_linear(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn semi_linear(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let values: Option<Vec<ExprId>> = args
             .iter()
             .map(|a| self.instance.evaluator().eval(a, view).and_then(|v| v.scalar()).map(|(e, _)| e))
@@ -433,40 +453,46 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         };
         let quiet = self.instance.eval.mode.no_event || self.instance.variability(x) <= Variability::Discrete;
         let c = if quiet {
-            self.instance.exprs.rel(Rel::Ge, x, Exprs::ZERO)
+            self.instance.exprs.rel(RelationalOp::Ge, x, Exprs::ZERO)
         } else {
-            self.instance.exprs.event_rel(Rel::Ge, x, Exprs::ZERO)
+            self.instance.exprs.event_rel(RelationalOp::Ge, x, Exprs::ZERO)
         };
         let (a, b) = (self.instance.exprs.mul(up, x), self.instance.exprs.mul(down, x));
         let value = self.instance.exprs.if_(c, a, b);
         // where nothing flows the slopes of unknowns are equal (MLS 3.7.4.5): a flow far below others says so
         let fixed = [up, down].iter().all(|&e| self.instance.variability(e) <= Variability::Discrete);
         if fixed {
-            return Some(Val::Scalar(value, Type::Real));
+            return Some(ModelicaValue::Scalar(value, ScalarType::Real));
         }
         let (difference, least) = (self.instance.exprs.sub(up, down), self.instance.exprs.num(LEAST_FLOW));
         let exchange = self.instance.exprs.mul(least, difference);
-        Some(Val::Scalar(self.instance.exprs.add(value, exchange), Type::Real))
+        Some(ModelicaValue::Scalar(self.instance.exprs.add(value, exchange), ScalarType::Real))
     }
 
-    fn mathematics(&mut self, op: Unary, v: &Val, span: Span) -> Option<Val> {
+    fn mathematics(&mut self, op: UnaryFunction, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         match v.element_type() {
-            Some(Type::Real | Type::Integer) => {}
+            Some(ScalarType::Real | ScalarType::Integer) => {}
             None if v.elements().is_empty() => {}
             _ => return self.instance.evaluator().wrong_type("a number", v, span),
         }
-        let keeps = matches!(op, Unary::Abs | Unary::Sign);
+        let keeps = matches!(op, UnaryFunction::Abs | UnaryFunction::Sign);
         let value = v.map(&mut |e, _| self.instance.exprs.unary(op, e));
         Some(match op {
-            Unary::Sign => retyped(&value, Type::Integer),
+            UnaryFunction::Sign => retyped(&value, ScalarType::Integer),
             _ if keeps => value,
-            _ => value.with_type(Type::Real),
+            _ => value.with_type(ScalarType::Real),
         })
     }
 
-    fn real_pair(&mut self, op: Binary, a: &Val, b: &Val, span: Span) -> Option<Val> {
+    fn real_pair(
+        &mut self,
+        op: BinaryFunction,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         let value = a.zip(b, &mut |x, y, _| self.instance.exprs.binary(op, x, y));
-        value.map(|v| v.with_type(Type::Real)).or_else(|| self.instance.operators().sizes_differ(a, b, span))
+        value.map(|v| v.with_type(ScalarType::Real)).or_else(|| self.instance.operators().sizes_differ(a, b, span))
     }
 
     /// Whole part of a quotient with the events that Modelica asks for (MLS 3.7.2).
@@ -481,8 +507,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    fn rounding(&mut self, name: &str, v: &Val, span: Span) -> Option<Val> {
-        if !matches!(v.element_type(), Some(Type::Real | Type::Integer)) {
+    fn rounding(&mut self, name: &str, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
+        if !matches!(v.element_type(), Some(ScalarType::Real | ScalarType::Integer)) {
             return self.instance.evaluator().wrong_type("a number", v, span);
         }
         let value = v.map(&mut |e, _| {
@@ -494,10 +520,10 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                 self.whole(e)
             }
         });
-        Some(if name == "integer" { retyped(&value, Type::Integer) } else { value })
+        Some(if name == "integer" { retyped(&value, ScalarType::Integer) } else { value })
     }
 
-    fn division(&mut self, name: &str, a: &Val, b: &Val, span: Span) -> Option<Val> {
+    fn division(&mut self, name: &str, a: &ModelicaValue, b: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         let value = a.zip(b, &mut |x, y, _| {
             let quotient = self.instance.exprs.div(x, y);
             let part = if name == "mod" { self.whole(quotient) } else { self.truncated(quotient) };
@@ -519,14 +545,20 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
             || self.instance.eval.mode.procedure
             || self.instance.variability(e) <= Variability::Discrete;
         let positive = if quiet {
-            self.instance.exprs.rel(Rel::Ge, e, Exprs::ZERO)
+            self.instance.exprs.rel(RelationalOp::Ge, e, Exprs::ZERO)
         } else {
-            self.instance.exprs.event_rel(Rel::Ge, e, Exprs::ZERO)
+            self.instance.exprs.event_rel(RelationalOp::Ge, e, Exprs::ZERO)
         };
         self.instance.exprs.if_(positive, down, up)
     }
 
-    fn extremum(&mut self, function: &'a Reference, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn extremum(
+        &mut self,
+        function: &'a ComponentReference,
+        args: &'a [Expr],
+        view: LookupContext,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         let name = function.parts[0].name.name.as_str();
         match args {
             [a] => {
@@ -536,7 +568,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
             }
             [a, b] => {
                 let (a, b) = (self.instance.evaluator().eval(a, view)?, self.instance.evaluator().eval(b, view)?);
-                let op = if name == "min" { Binary::Min } else { Binary::Max };
+                let op = if name == "min" { BinaryFunction::Min } else { BinaryFunction::Max };
                 let value = a.zip(&b, &mut |x, y, _| self.instance.exprs.binary(op, x, y));
                 value.or_else(|| self.instance.operators().sizes_differ(&a, &b, span))
             }
@@ -547,16 +579,16 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     /// `sum`, `product`, `min`, `max` over values.
     pub(in crate::instance) fn reduction(
         &mut self,
-        function: &'a Reference,
-        values: Vec<Val>,
+        function: &'a ComponentReference,
+        values: Vec<ModelicaValue>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let name = function.parts[0].name.name.as_str();
         let op = match name {
-            "sum" => Binary::Add,
-            "product" => Binary::Mul,
-            "min" => Binary::Min,
-            "max" => Binary::Max,
+            "sum" => BinaryFunction::Add,
+            "product" => BinaryFunction::Mul,
+            "min" => BinaryFunction::Min,
+            "max" => BinaryFunction::Max,
             "array" => return self.instance.evaluator().stacked(values, span),
             _ => {
                 let message = format!("`{name}` cannot run over iterators; `sum`, `product`, `min` and `max` can");
@@ -564,14 +596,14 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
             }
         };
         let Some(mut result) = values.first().cloned() else {
-            return Some(Val::Scalar(
+            return Some(ModelicaValue::Scalar(
                 match op {
-                    Binary::Add => Exprs::ZERO,
-                    Binary::Mul => Exprs::ONE,
-                    Binary::Min => self.instance.exprs.num(f64::MAX),
+                    BinaryFunction::Add => Exprs::ZERO,
+                    BinaryFunction::Mul => Exprs::ONE,
+                    BinaryFunction::Min => self.instance.exprs.num(f64::MAX),
                     _ => self.instance.exprs.num(-f64::MAX),
                 },
-                Type::Real,
+                ScalarType::Real,
             ));
         };
         for v in &values[1..] {
@@ -583,7 +615,13 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(result)
     }
 
-    fn array_function(&mut self, name: &str, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn array_function(
+        &mut self,
+        name: &str,
+        args: &'a [Expr],
+        view: LookupContext,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         match name {
             "zeros" | "ones" | "identity" => {
                 let dims: Option<Vec<usize>> = args.iter().map(|a| self.dimension_in(a, view)).collect();
@@ -593,7 +631,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                 }
                 let e = if name == "zeros" { Exprs::ZERO } else { Exprs::ONE };
                 let count = dims.iter().product();
-                return Some(Val::array(dims, vec![Val::Scalar(e, Type::Integer); count]));
+                return Some(ModelicaValue::array(dims, vec![ModelicaValue::Scalar(e, ScalarType::Integer); count]));
             }
             "fill" => {
                 let (first, rest) = args.split_first()?;
@@ -603,7 +641,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                 let count: usize = dims.iter().product();
                 let all: Vec<usize> = dims.iter().chain(value.dims()).copied().collect();
                 let elements = (0..count).flat_map(|_| value.elements().to_vec()).collect();
-                return Some(Val::array(all, elements));
+                return Some(ModelicaValue::array(all, elements));
             }
             _ => {}
         }
@@ -612,7 +650,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         {
             return self.sizes(name, &dims, args.get(1), view, span);
         }
-        let values: Option<Vec<Val>> = args.iter().map(|a| self.instance.evaluator().eval(a, view)).collect();
+        let values: Option<Vec<ModelicaValue>> = args.iter().map(|a| self.instance.evaluator().eval(a, view)).collect();
         let values = values?;
         let Some(first) = values.first() else {
             return self.instance.fail(Code::BadCall, &format!("`{name}` needs an argument"), span);
@@ -621,7 +659,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
             ("array", _) => self.instance.evaluator().stacked(values, span),
             ("ndims", 1) | ("size", 1 | 2) => self.sizes(name, first.dims(), args.get(1), view, span),
             ("scalar", 1) if first.elements().len() == 1 => Some(first.elements()[0].clone()),
-            ("vector", 1) => Some(Val::array(vec![first.elements().len()], first.elements().to_vec())),
+            ("vector", 1) => Some(ModelicaValue::array(vec![first.elements().len()], first.elements().to_vec())),
             ("matrix", 1) => self.promote(first, 2, span),
             ("promote", 2) => {
                 let n = values[1].as_number(&self.instance.exprs).unwrap_or(0.0) as usize;
@@ -641,15 +679,15 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                 let t = transposed(first);
                 let pick =
                     |i: usize| if i % n >= i / n { first.elements()[i].clone() } else { t.elements()[i].clone() };
-                Some(Val::array(first.dims().to_vec(), (0..n * n).map(pick).collect()))
+                Some(ModelicaValue::array(first.dims().to_vec(), (0..n * n).map(pick).collect()))
             }
             ("diagonal", 1) if first.dims().len() == 1 => {
                 let n = first.dims()[0];
-                let zero = Val::Scalar(Exprs::ZERO, first.element_type().unwrap_or(Type::Real));
+                let zero = ModelicaValue::Scalar(Exprs::ZERO, first.element_type().unwrap_or(ScalarType::Real));
                 let entry = |i: usize| {
                     if i.is_multiple_of(n + 1) { first.elements()[i / (n + 1)].clone() } else { zero.clone() }
                 };
-                Some(Val::array(vec![n, n], (0..n * n).map(entry).collect()))
+                Some(ModelicaValue::array(vec![n, n], (0..n * n).map(entry).collect()))
             }
             ("outerProduct", 2) => {
                 let (n, m) = (first.elements().len(), values[1].elements().len());
@@ -660,7 +698,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                         elements.push(product.or_else(|| self.instance.operators().sizes_differ(a, b, span))?);
                     }
                 }
-                Some(Val::array(vec![n, m], elements))
+                Some(ModelicaValue::array(vec![n, m], elements))
             }
             ("cross", 2) if first.dims() == [3] && values[1].dims() == [3] => self.cross(first, &values[1]),
             ("skew", 1) if first.dims() == [3] => self.skew(first),
@@ -669,13 +707,20 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     }
 
     /// `ndims(a)`, `size(a)` or `size(a, k)` of sizes that are known.
-    fn sizes(&mut self, name: &str, dims: &[usize], along: Option<&'a Expr>, view: View, span: Span) -> Option<Val> {
+    fn sizes(
+        &mut self,
+        name: &str,
+        dims: &[usize],
+        along: Option<&'a Expr>,
+        view: LookupContext,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         if name == "ndims" {
             return Some(self.instance.evaluator().integer(dims.len() as f64));
         }
         let Some(along) = along else {
             let elements = dims.iter().map(|&n| self.instance.evaluator().integer(n as f64)).collect();
-            return Some(Val::array(vec![dims.len()], elements));
+            return Some(ModelicaValue::array(vec![dims.len()], elements));
         };
         let k = self.instance.evaluator().eval(along, view)?.as_number(&self.instance.exprs).unwrap_or(0.0);
         match dims.get((k as usize).wrapping_sub(1)) {
@@ -692,7 +737,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     }
 
     /// A size: known before the run, or known inside the function being evaluated.
-    fn dimension_in(&mut self, e: &'a Expr, view: View) -> Option<usize> {
+    fn dimension_in(&mut self, e: &'a Expr, view: LookupContext) -> Option<usize> {
         if self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure {
             return self.instance.evaluator().dimension(e, view);
         }
@@ -700,7 +745,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(x.max(0.0) as usize)
     }
 
-    fn promote(&mut self, v: &Val, n: usize, span: Span) -> Option<Val> {
+    fn promote(&mut self, v: &ModelicaValue, n: usize, span: Span) -> Option<ModelicaValue> {
         let mut dims = v.dims().to_vec();
         if n == 2 && dims.len() > 2 {
             dims.retain(|&d| d != 1);
@@ -711,10 +756,10 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         if dims.iter().product::<usize>() != v.elements().len() || dims.len() != n {
             return self.instance.fail(Code::SizeMismatch, &format!("{} has too many dimensions", v.describe()), span);
         }
-        Some(Val::array(dims, v.elements().to_vec()))
+        Some(ModelicaValue::array(dims, v.elements().to_vec()))
     }
 
-    fn linspace(&mut self, values: &[Val], count: Option<f64>, span: Span) -> Option<Val> {
+    fn linspace(&mut self, values: &[ModelicaValue], count: Option<f64>, span: Span) -> Option<ModelicaValue> {
         let n = count.filter(|n| *n >= 2.0);
         let (Some((a, _)), Some((b, _)), Some(n)) = (values[0].scalar(), values[1].scalar(), n) else {
             return self.instance.fail(
@@ -729,56 +774,56 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
             .map(|i| {
                 let share = self.instance.exprs.num(i as f64 / (n - 1) as f64);
                 let part = self.instance.exprs.mul(distance, share);
-                Val::Scalar(self.instance.exprs.add(a, part), Type::Real)
+                ModelicaValue::Scalar(self.instance.exprs.add(a, part), ScalarType::Real)
             })
             .collect();
-        Some(Val::array(vec![n], elements))
+        Some(ModelicaValue::array(vec![n], elements))
     }
 
-    fn cross(&mut self, a: &Val, b: &Val) -> Option<Val> {
-        let s = |v: &Val, i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
+    fn cross(&mut self, a: &ModelicaValue, b: &ModelicaValue) -> Option<ModelicaValue> {
+        let s = |v: &ModelicaValue, i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
         let ty = wider(a.element_type()?, b.element_type()?)?;
         let mut elements = Vec::new();
         for (i, j) in [(1, 2), (2, 0), (0, 1)] {
             let p = self.instance.exprs.mul(s(a, i), s(b, j));
             let q = self.instance.exprs.mul(s(a, j), s(b, i));
-            elements.push(Val::Scalar(self.instance.exprs.sub(p, q), ty));
+            elements.push(ModelicaValue::Scalar(self.instance.exprs.sub(p, q), ty));
         }
-        Some(Val::array(vec![3], elements))
+        Some(ModelicaValue::array(vec![3], elements))
     }
 
-    fn skew(&mut self, v: &Val) -> Option<Val> {
+    fn skew(&mut self, v: &ModelicaValue) -> Option<ModelicaValue> {
         let ty = v.element_type()?;
         let s = |i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
         let z = Exprs::ZERO;
         let (n0, n1, n2) =
             (self.instance.exprs.neg(s(0)), self.instance.exprs.neg(s(1)), self.instance.exprs.neg(s(2)));
         let entries = [z, n2, s(1), s(2), z, n0, n1, s(0), z];
-        Some(Val::array(vec![3, 3], entries.into_iter().map(|e| Val::Scalar(e, ty)).collect()))
+        Some(ModelicaValue::array(vec![3, 3], entries.into_iter().map(|e| ModelicaValue::Scalar(e, ty)).collect()))
     }
 
-    fn string(&mut self, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn string(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let Some(first) = args.first() else {
             return self.instance.fail(Code::BadCall, "`String` needs a value", span);
         };
         match self.instance.evaluator().eval(first, view)? {
-            Val::Scalar(e, Type::Enumeration(i)) => {
+            ModelicaValue::Scalar(e, ScalarType::Enumeration(i)) => {
                 let known = self.instance.exprs.as_num(e).and_then(|x| {
                     self.instance.enumerations[i as usize].literals.get(x as usize - 1).map(|l| l.as_str())
                 });
                 Some(match known {
-                    Some(name) => Val::text(name),
-                    None => Val::Text(Rc::new(vec![MessagePart::Value(e, Type::Enumeration(i))])),
+                    Some(name) => ModelicaValue::text(name),
+                    None => ModelicaValue::Text(Rc::new(vec![MessagePart::Value(e, ScalarType::Enumeration(i))])),
                 })
             }
-            Val::Scalar(e, ty) => Some(Val::Text(Rc::new(vec![MessagePart::Value(e, ty)]))),
-            other @ Val::Text(_) => Some(other),
+            ModelicaValue::Scalar(e, ty) => Some(ModelicaValue::Text(Rc::new(vec![MessagePart::Value(e, ty)]))),
+            other @ ModelicaValue::Text(_) => Some(other),
             other => self.instance.evaluator().wrong_type("a single value", &other, span),
         }
     }
 
     /// Reports a call of something that is no function.
-    pub(in crate::instance) fn unknown_function(&mut self, function: &Reference) {
+    pub(in crate::instance) fn unknown_function(&mut self, function: &ComponentReference) {
         let name: Vec<&str> = function.parts.iter().map(|p| p.name.name.as_str()).collect();
         let name = name.join(".");
         const KNOWN: [&str; 40] = [
@@ -801,20 +846,22 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     }
 }
 
-fn transposed(v: &Val) -> Val {
+fn transposed(v: &ModelicaValue) -> ModelicaValue {
     let (n, m) = (v.dims()[0], v.dims()[1]);
-    Val::array(vec![m, n], (0..n * m).map(|i| v.elements()[(i % n) * m + i / n].clone()).collect())
+    ModelicaValue::array(vec![m, n], (0..n * m).map(|i| v.elements()[(i % n) * m + i / n].clone()).collect())
 }
 
 /// The same scalars under another type.
-pub(in crate::instance) fn retyped(v: &Val, ty: Type) -> Val {
+pub(in crate::instance) fn retyped(v: &ModelicaValue, ty: ScalarType) -> ModelicaValue {
     match v {
-        Val::Scalar(e, _) => Val::Scalar(*e, ty),
-        Val::Array { dims, elements } => Val::array(dims.clone(), elements.iter().map(|v| retyped(v, ty)).collect()),
+        ModelicaValue::Scalar(e, _) => ModelicaValue::Scalar(*e, ty),
+        ModelicaValue::Array { dims, elements } => {
+            ModelicaValue::array(dims.clone(), elements.iter().map(|v| retyped(v, ty)).collect())
+        }
         other => other.clone(),
     }
 }
 
-fn as_integer(v: Val) -> Val {
-    retyped(&v, Type::Integer)
+fn as_integer(v: ModelicaValue) -> ModelicaValue {
+    retyped(&v, ScalarType::Integer)
 }

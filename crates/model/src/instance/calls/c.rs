@@ -3,12 +3,12 @@
 
 use crate::instance::ExternalCalls;
 use crate::instance::call::Callee;
-use crate::instance::calls::external::{Argument, CCall, external_text};
-use crate::instance::value::Val;
-use bramah_expr::function::External;
-use bramah_expr::types::Type;
-use bramah_external::c::{self, Kind, Signature};
-use bramah_syntax::ast::{Causality, Ident};
+use crate::instance::calls::external::{CCall, ExternalArgument, external_text};
+use crate::instance::value::ModelicaValue;
+use bramah_expr::function::ExternalFunction;
+use bramah_expr::types::ScalarType;
+use bramah_external::c::{self, CNumberType, CSignature};
+use bramah_syntax::ast::{CausalityPrefix, Ident};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::ffi::OsString;
 use std::sync::Arc;
@@ -20,10 +20,10 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     pub(in crate::instance) fn call_c(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         if !self.instance.library.calls_c() {
             self.instance.report(
                 Diagnostic::new(Code::Unsupported, format!("the external function `{}` is not supported", callee.name))
@@ -35,7 +35,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         self.instance.calls().with_inputs(callee, positional, named, span, |s| s.externals().carry_out_c(callee, span))
     }
 
-    fn carry_out_c(&mut self, callee: &Callee<'a>, span: Span) -> Option<Val> {
+    fn carry_out_c(&mut self, callee: &Callee<'a>, span: Span) -> Option<ModelicaValue> {
         let is_c = !external_text(callee)?.trim_start().starts_with("\"FORTRAN");
         let Some(call) = self.c_call(callee).filter(|_| is_c) else {
             self.instance
@@ -51,9 +51,9 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         };
         let mut scalars = Vec::new();
         for argument in &call.arguments {
-            if let (Argument::Name(name), Some(value)) = (argument, self.input_of_c(argument))
+            if let (ExternalArgument::Name(name), Some(value)) = (argument, self.input_of_c(argument))
                 && !self.is_output(callee, *name)
-                && !matches!(value, Val::Text(_))
+                && !matches!(value, ModelicaValue::Text(_))
             {
                 value.scalars(&mut scalars);
             }
@@ -64,11 +64,11 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     /// Compiles a wrapper, and says what was run for it.
     fn compiled(
         &mut self,
-        signature: &Signature,
+        signature: &CSignature,
         wrapper: &str,
         callee: &Callee<'a>,
         span: Span,
-    ) -> Option<Arc<dyn External>> {
+    ) -> Option<Arc<dyn ExternalFunction>> {
         let arguments = self.compiler_arguments(callee);
         let compiled = self.instance.library.compile_c(wrapper, c::UTILITIES, arguments);
         let ran = compiled.as_ref().map(|c| c.command.clone()).unwrap_or_default();
@@ -95,34 +95,34 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     fn is_output(&mut self, callee: &Callee<'a>, name: bramah_syntax::symbol::Symbol) -> bool {
         self.instance
             .calls()
-            .formals(callee, |c, _| c.prefix.causality == Some(Causality::Output))
+            .formals(callee, |c, _| c.prefix.causality == Some(CausalityPrefix::Output))
             .iter()
             .any(|f| f.name == name)
     }
 
     /// The types in C of a call's arguments.
-    fn signature(&mut self, call: &CCall, callee: &Callee<'a>, span: Span) -> Option<Signature> {
-        let outputs = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+    fn signature(&mut self, call: &CCall, callee: &Callee<'a>, span: Span) -> Option<CSignature> {
+        let outputs = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(CausalityPrefix::Output));
         let mut arguments = Vec::new();
         for argument in &call.arguments {
             let made = match argument {
-                Argument::Text(words) => Some(c::Argument::Text(words.clone())),
-                Argument::Number(x) => Some(c::Argument::Number(*x)),
-                Argument::Size(name, dimension) => {
-                    let value = self.input_of_c(&Argument::Name(*name))?;
-                    value.dims().get(dimension - 1).map(|n| c::Argument::Size(*n))
+                ExternalArgument::Text(words) => Some(c::CArgument::Text(words.clone())),
+                ExternalArgument::Number(x) => Some(c::CArgument::Number(*x)),
+                ExternalArgument::Size(name, dimension) => {
+                    let value = self.input_of_c(&ExternalArgument::Name(*name))?;
+                    value.dims().get(dimension - 1).map(|n| c::CArgument::Size(*n))
                 }
-                Argument::Name(name) => match outputs.iter().find(|f| f.name == *name) {
+                ExternalArgument::Name(name) => match outputs.iter().find(|f| f.name == *name) {
                     Some(formal) => {
                         let blank = self.instance.calls().declared_local(formal)?;
-                        number(&blank).map(|(kind, n)| c::Argument::Output(kind, n))
+                        number(&blank).map(|(kind, n)| c::CArgument::Output(kind, n))
                     }
                     None => match self.input_of_c(argument)? {
-                        text @ Val::Text(_) => text.as_text(&self.instance.exprs).map(c::Argument::Text),
-                        value => number(&value).map(|(kind, n)| c::Argument::Input(kind, n)),
+                        text @ ModelicaValue::Text(_) => text.as_text(&self.instance.exprs).map(c::CArgument::Text),
+                        value => number(&value).map(|(kind, n)| c::CArgument::Input(kind, n)),
                     },
                 },
-                Argument::Other => None,
+                ExternalArgument::Other => None,
             };
             let Some(made) = made else {
                 self.instance
@@ -136,7 +136,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
             None => None,
         };
         let include = annotation_texts(external_text(callee)?, "Include").join("\n");
-        Some(Signature { name: call.name.clone(), result, arguments, include })
+        Some(CSignature { name: call.name.clone(), result, arguments, include })
     }
 
     /// Folders and libraries of the annotations, as the compiler takes them.
@@ -168,8 +168,8 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
 }
 
 /// Whether a value is of numbers, of which kind and how many.
-fn number(value: &Val) -> Option<(Kind, Option<usize>)> {
-    let kind = if value.element_type()? == Type::Real { Kind::Real } else { Kind::Integer };
+fn number(value: &ModelicaValue) -> Option<(CNumberType, Option<usize>)> {
+    let kind = if value.element_type()? == ScalarType::Real { CNumberType::Real } else { CNumberType::Integer };
     let dims = value.dims();
     Some((kind, (!dims.is_empty()).then(|| dims.iter().product())))
 }

@@ -1,19 +1,19 @@
 //! Calls: built-in functions, record constructors, user functions (written out as expressions where that is possible).
 
-use crate::instance::algorithm::Flow;
+use crate::instance::algorithm::StatementFlow;
 use crate::instance::builtin::retyped;
 use crate::instance::calls::binding::is_input;
 use crate::instance::calls::locals::in_order_of_use;
-use crate::instance::evaluation::state::{Mode, Work};
-use crate::instance::files::Place;
-use crate::instance::lookup::{Builtin, Found};
-use crate::instance::template::{Kind, Template};
-use crate::instance::value::Val;
-use crate::instance::vectorised::Given;
-use crate::instance::{ClassRef, FunctionCalls, ScopeId, View};
+use crate::instance::evaluation::state::{EvaluationMode, StatementBudget};
+use crate::instance::files::FileReference;
+use crate::instance::lookup::{BuiltinType, LookupResult};
+use crate::instance::template::{Template, TemplateElementKind};
+use crate::instance::value::ModelicaValue;
+use crate::instance::vectorised::CallArguments;
+use crate::instance::{ClassRef, FunctionCalls, LookupContext, ScopeId};
 use bramah_expr::ExprId;
-use bramah_expr::types::{Type, Variability};
-use bramah_syntax::ast::{self, Causality, ClassKind, Expr, Ident, Reference};
+use bramah_expr::types::{ScalarType, Variability};
+use bramah_syntax::ast::{self, CausalityPrefix, ClassKind, ComponentReference, Expr, Ident};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
@@ -35,22 +35,22 @@ pub(in crate::instance) struct Callee<'a> {
 }
 
 /// One declared input, output or local of a function.
-pub(in crate::instance) struct Formal<'a> {
+pub(in crate::instance) struct FormalParameter<'a> {
     pub name: Symbol,
-    pub component: &'a ast::Component,
+    pub component: &'a ast::ComponentDeclaration,
     pub index: u32,
-    pub view: View,
+    pub view: LookupContext,
 }
 
 impl<'a> FunctionCalls<'_, 'a, '_> {
     pub(in crate::instance) fn call(
         &mut self,
-        function: &'a Reference,
+        function: &'a ComponentReference,
         args: &'a [Expr],
         named: &'a [(Ident, Expr)],
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         if let Some((class, bound)) = self.functional_input(function) {
             return self.call_bound(class, args, named, &bound, view, span);
         }
@@ -65,8 +65,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             span: function.span,
         };
         match self.instance.names().lookup_path(view, &path) {
-            Ok(Found::Class(class)) => self.call_bound(class, args, named, &[], view, span),
-            Ok(Found::Builtin(Builtin::Enumeration(i))) => self.enumeration_of(i, args, view, span),
+            Ok(LookupResult::Class(class)) => self.call_bound(class, args, named, &[], view, span),
+            Ok(LookupResult::Builtin(BuiltinType::Enumeration(i))) => self.enumeration_of(i, args, view, span),
             _ => match self.instance_function(function, view) {
                 Some(class) => self.call_class(class, args, named, &[], view, span),
                 None => {
@@ -79,9 +79,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
 
     /// Whether a class that is visible here bears the name of a built-in function, as after
     /// `import Modelica.ComplexMath.abs`: it is nearer (MLS 5.3.1).
-    fn is_redefined(&mut self, function: &Reference, view: View) -> bool {
+    fn is_redefined(&mut self, function: &ComponentReference, view: LookupContext) -> bool {
         let [part] = function.parts.as_slice() else { return false };
-        !function.global && matches!(self.instance.names().lookup_nested(view, part.name.name), Some(Found::Class(_)))
+        !function.global
+            && matches!(self.instance.names().lookup_nested(view, part.name.name), Some(LookupResult::Class(_)))
     }
 
     /// Calls a function some of whose inputs were given before.
@@ -90,10 +91,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         class: ClassRef<'a>,
         args: &'a [Expr],
         named: &'a [(Ident, Expr)],
-        bound: &[(Ident, Val)],
-        view: View,
+        bound: &[(Ident, ModelicaValue)],
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         match self.external_builtin(&class) {
             Some(name) => self.instance.builtins().named_mathematics(&name, args, named, view, span),
             None => self.call_class(class, args, named, bound, view, span),
@@ -109,28 +110,29 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     }
 
     /// A function named through a component, as in `oil.density(p)`.
-    fn instance_function(&mut self, function: &Reference, view: View) -> Option<ClassRef<'a>> {
-        let Found::Component(scope, index) = self.instance.names().lookup(view, function.parts[0].name.name)? else {
+    fn instance_function(&mut self, function: &ComponentReference, view: LookupContext) -> Option<ClassRef<'a>> {
+        let LookupResult::Component(scope, index) = self.instance.names().lookup(view, function.parts[0].name.name)?
+        else {
             return None;
         };
         let mut node = self.instance.builder().component(scope, index)?;
         let (last, middle) = function.parts[1..].split_last()?;
         for (k, part) in middle.iter().enumerate() {
-            let crate::instance::Node::Object(s) = *self.instance.node(node) else { return None };
+            let crate::instance::InstanceNode::Object(s) = *self.instance.node(node) else { return None };
             let &i = self.instance.scope(s).template.by_name.get(&part.name.name)?;
-            if matches!(self.instance.scope(s).template.elements[i as usize].kind, Kind::Class(_)) {
-                let mut found = self.instance.names().lookup(View { scope: s, base: 0 }, part.name.name)?;
+            if matches!(self.instance.scope(s).template.elements[i as usize].kind, TemplateElementKind::Class(_)) {
+                let mut found = self.instance.names().lookup(LookupContext { scope: s, base: 0 }, part.name.name)?;
                 for next in middle[k + 1..].iter().chain([last]) {
                     found = self.instance.names().member(&found, next.name.name)?;
                 }
-                let Found::Class(class) = found else { return None };
+                let LookupResult::Class(class) = found else { return None };
                 return Some(class);
             }
             node = self.instance.builder().component(s, i)?;
         }
-        let crate::instance::Node::Object(s) = *self.instance.node(node) else { return None };
-        match self.instance.names().lookup(View { scope: s, base: 0 }, last.name.name)? {
-            Found::Class(class) => Some(class),
+        let crate::instance::InstanceNode::Object(s) = *self.instance.node(node) else { return None };
+        match self.instance.names().lookup(LookupContext { scope: s, base: 0 }, last.name.name)? {
+            LookupResult::Class(class) => Some(class),
             _ => None,
         }
     }
@@ -140,25 +142,27 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         class: ClassRef<'a>,
         args: &'a [Expr],
         named: &'a [(Ident, Expr)],
-        bound: &[(Ident, Val)],
-        view: View,
+        bound: &[(Ident, ModelicaValue)],
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let template = self.instance.names().template(class.class, class.parent);
-        if let Some(Builtin::Enumeration(i)) = template.builtin {
+        if let Some(BuiltinType::Enumeration(i)) = template.builtin {
             return self.enumeration_of(i, args, view, span);
         }
         // a function without outputs only asserts
         let text = gives_text(&template) || gives_nothing(&template);
-        let positional: Option<Vec<Val>> = args.iter().map(|a| self.argument(a, text, view)).collect();
+        let positional: Option<Vec<ModelicaValue>> = args.iter().map(|a| self.argument(a, text, view)).collect();
         let mut by_name = Vec::new();
         for (name, e) in named {
             by_name.push((*name, self.argument(e, text, view)?));
         }
         let mut positional = positional?;
         if !bound.is_empty() {
-            let inputs =
-                template.elements.iter().filter(|e| matches!(e.kind, Kind::Component(c) if is_input(c, e.protected)));
+            let inputs = template
+                .elements
+                .iter()
+                .filter(|e| matches!(e.kind, TemplateElementKind::Component(c) if is_input(c, e.protected)));
             let open: Vec<Ident> = inputs
                 .filter(|e| bound.iter().all(|(n, _)| n.name != e.name))
                 .map(|e| Ident { name: e.name, span })
@@ -168,12 +172,16 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             }
         }
         by_name.extend_from_slice(bound);
-        if template.builtin == Some(Builtin::Object) {
-            let place = Place { call: span, given: None };
-            return self.instance.externals().construct_object(&class, Given { positional, named: by_name }, place);
+        if template.builtin == Some(BuiltinType::Object) {
+            let place = FileReference { call: span, given: None };
+            return self.instance.externals().construct_object(
+                &class,
+                CallArguments { positional, named: by_name },
+                place,
+            );
         }
         if matches!(template.kind, ClassKind::Record { operator: true }) {
-            let given = Given { positional: positional.clone(), named: by_name.clone() };
+            let given = CallArguments { positional: positional.clone(), named: by_name.clone() };
             if let Some(made) = self.instance.operators().overloaded_constructor(&class, &given, span) {
                 return made;
             }
@@ -188,7 +196,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                     let place = self.instance.externals().file_place(args.first(), view, span);
                     self.instance.externals().call_file_function(function, &callee, positional, by_name, place)
                 }
-                None => self.call_elementwise(&callee, Given { positional, named: by_name }, span),
+                None => self.call_elementwise(&callee, CallArguments { positional, named: by_name }, span),
             },
             _ => {
                 let message = format!("`{}` is not a function", callee.name);
@@ -199,7 +207,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
 
     /// An argument; whole numbers that parameters give are taken by value, for sizes and loops depend on them, and
     /// whatever a text depends on.
-    fn argument(&mut self, e: &'a Expr, text: bool, view: View) -> Option<Val> {
+    fn argument(&mut self, e: &'a Expr, text: bool, view: LookupContext) -> Option<ModelicaValue> {
         let value = self.instance.evaluator().eval(e, view)?;
         if text && !value.dims().is_empty() && self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure {
             let mut scalars = Vec::new();
@@ -209,8 +217,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                 return self.instance.evaluator().constant(e, view);
             }
         }
-        if let Val::Scalar(id, ty) = value
-            && (text || ty == Type::Integer)
+        if let ModelicaValue::Scalar(id, ty) = value
+            && (text || ty == ScalarType::Integer)
         {
             let outside = self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure;
             let open =
@@ -226,47 +234,47 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(value)
     }
 
-    fn enumeration_of(&mut self, i: u32, args: &'a [Expr], view: View, span: Span) -> Option<Val> {
+    fn enumeration_of(&mut self, i: u32, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let [arg] = args else {
             return self.instance.fail(Code::BadCall, "a conversion to an enumeration takes one Integer", span);
         };
-        Some(retyped(&self.instance.evaluator().eval(arg, view)?, Type::Enumeration(i)))
+        Some(retyped(&self.instance.evaluator().eval(arg, view)?, ScalarType::Enumeration(i)))
     }
 
     /// A value of a record class from its constructor.
     pub(in crate::instance) fn construct(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let formals = self.formals(callee, |c, protected| {
-            !protected && !matches!(c.prefix.variability, Some(ast::Variability::Constant))
+            !protected && !matches!(c.prefix.variability, Some(ast::VariabilityPrefix::Constant))
         });
         let fields = self.instance.in_frame(|s| {
             s.calls().bind(callee, &formals, positional, named, span)?;
-            let value = |f: &Formal<'a>| Some((f.name, s.eval.locals[s.local(f.name)?].1.clone()));
+            let value = |f: &FormalParameter<'a>| Some((f.name, s.eval.locals[s.local(f.name)?].1.clone()));
             formals.iter().map(value).collect::<Option<Vec<_>>>()
         })?;
         let class = self.instance.operators().operator_class_of(&callee.template);
-        Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class })))
+        Some(ModelicaValue::Record(Rc::new(crate::instance::value::RecordValue { fields, class })))
     }
 
     pub(in crate::instance) fn call_function(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         if let Some(how) = self.instance.externals().external_builtin_of(callee) {
             return self.instance.externals().call_external(
                 how,
                 callee,
                 positional,
                 named,
-                Place { call: span, given: None },
+                FileReference { call: span, given: None },
             );
         }
         if callee.template.bases[0].ast.prefixes.partial {
@@ -303,7 +311,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         let mark = (self.instance.diagnostics.len(), self.instance.eval.calls.len());
         let work = self.instance.eval.work;
         if self.instance.eval.depth == 0 {
-            self.instance.eval.work = Work::allowed([MOST_STEPS, MOST_KNOWN_STEPS]);
+            self.instance.eval.work = StatementBudget::allowed([MOST_STEPS, MOST_KNOWN_STEPS]);
         }
         self.instance.eval.work.known = known;
         self.instance.eval.depth += 1;
@@ -334,10 +342,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     fn call_for_effect(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         if self.instance.eval.mode.procedure {
             return self.instance.procedures().procedure_body(callee, positional, named, span);
         }
@@ -388,11 +396,11 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
-    fn all_known(&self, values: &[Val]) -> bool {
+    fn all_known(&self, values: &[ModelicaValue]) -> bool {
         values.iter().all(|v| self.known(v))
     }
 
-    fn known(&self, v: &Val) -> bool {
+    fn known(&self, v: &ModelicaValue) -> bool {
         let mut scalars: Vec<ExprId> = Vec::new();
         v.scalars(&mut scalars);
         scalars.iter().all(|&e| self.instance.exprs.as_num(e).is_some())
@@ -402,11 +410,11 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     fn inline(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
-    ) -> Option<Val> {
-        let change = |m: &mut Mode| {
+    ) -> Option<ModelicaValue> {
+        let change = |m: &mut EvaluationMode| {
             m.under_procedure |= m.procedure;
             m.procedure = false;
         };
@@ -416,10 +424,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     fn inline_body(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let inputs = self.formals(callee, is_input);
         self.bind(callee, &inputs, positional, named, span)?;
         let locals = self.formals(callee, |c, p| !is_input(c, p));
@@ -428,32 +436,32 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             self.instance.eval.locals.push((f.name, value));
         }
         for (section, view) in sections(callee) {
-            if self.instance.statements().execute(section, view)? == Flow::Return {
+            if self.instance.statements().execute(section, view)? == StatementFlow::Return {
                 break;
             }
         }
-        let outputs: Vec<Val> = locals
+        let outputs: Vec<ModelicaValue> = locals
             .iter()
-            .filter(|f| f.component.prefix.causality == Some(Causality::Output))
+            .filter(|f| f.component.prefix.causality == Some(CausalityPrefix::Output))
             .filter_map(|f| self.instance.local(f.name).map(|i| self.instance.eval.locals[i].1.clone()))
             .collect();
         Self::outputs(outputs)
     }
 
-    pub(in crate::instance) fn outputs(mut outputs: Vec<Val>) -> Option<Val> {
+    pub(in crate::instance) fn outputs(mut outputs: Vec<ModelicaValue>) -> Option<ModelicaValue> {
         match outputs.len() {
             1 => outputs.pop(),
-            _ => Some(Val::Tuple(Rc::new(outputs))),
+            _ => Some(ModelicaValue::Tuple(Rc::new(outputs))),
         }
     }
 }
 
 /// The algorithm sections of a function, those of its bases included, with where their names are looked up.
-pub(in crate::instance) fn sections<'a>(callee: &Callee<'a>) -> Vec<(&'a [ast::Statement], View)> {
+pub(in crate::instance) fn sections<'a>(callee: &Callee<'a>) -> Vec<(&'a [ast::Statement], LookupContext)> {
     let mut found = Vec::new();
     for (base, i) in callee.template.bases.iter().zip(0u32..) {
         if let ast::ClassBody::Long(body) = &base.ast.body {
-            let view = View { scope: callee.scope, base: i };
+            let view = LookupContext { scope: callee.scope, base: i };
             found.extend(body.algorithms.iter().map(|section| (section.as_slice(), view)));
         }
     }
@@ -466,14 +474,16 @@ fn gives_nothing(template: &Template<'_>) -> bool {
         && !template
             .elements
             .iter()
-            .any(|e| matches!(e.kind, Kind::Component(c) if c.prefix.causality == Some(Causality::Output)))
+            .any(|e| matches!(e.kind, TemplateElementKind::Component(c) if c.prefix.causality == Some(CausalityPrefix::Output)))
 }
 
 /// Whether a function has a text as an output.
 fn gives_text(template: &Template<'_>) -> bool {
     template.elements.iter().any(|e| match e.kind {
-        Kind::Component(c) => c.prefix.causality == Some(Causality::Output) && c.class.parts[0].name == "String",
-        Kind::Class(_) => false,
+        TemplateElementKind::Component(c) => {
+            c.prefix.causality == Some(CausalityPrefix::Output) && c.class.parts[0].name == "String"
+        }
+        TemplateElementKind::Class(_) => false,
     })
 }
 

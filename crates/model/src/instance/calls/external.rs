@@ -4,13 +4,13 @@
 use crate::instance::ExternalCalls;
 use crate::instance::FunctionCalls;
 use crate::instance::call::Callee;
-use crate::instance::files::Place;
-use crate::instance::value::Val;
+use crate::instance::files::FileReference;
+use crate::instance::value::ModelicaValue;
 use bramah_expr::ExprId;
-use bramah_expr::function::{External, Function, Handle, Stmt, Term};
-use bramah_expr::types::Type;
-use bramah_external::{Builtin, Given, NO_NAME};
-use bramah_syntax::ast::{Causality, ClassBody, Ident};
+use bramah_expr::function::{ExternalFunction, ExternalFunctionHandle, Function, SlotExpr, SlotStatement};
+use bramah_expr::types::ScalarType;
+use bramah_external::{BuiltinImplementation, ExternalValue, NO_NAME};
+use bramah_syntax::ast::{CausalityPrefix, ClassBody, Ident};
 use bramah_syntax::diag::Code;
 use bramah_syntax::symbol::Symbol;
 use std::sync::Arc;
@@ -20,12 +20,12 @@ pub(super) struct CCall {
     pub name: String,
     /// The output to which the result goes.
     pub result: Option<Symbol>,
-    pub arguments: Vec<Argument>,
+    pub arguments: Vec<ExternalArgument>,
 }
 
 /// An argument of a C call.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Argument {
+pub(super) enum ExternalArgument {
     /// An input or output of the function.
     Name(Symbol),
     /// A text.
@@ -38,16 +38,16 @@ pub(super) enum Argument {
     Other,
 }
 
-impl Argument {
+impl ExternalArgument {
     fn parse(text: &str) -> Self {
         match text {
-            "true" => Argument::Number(1.0),
-            "false" => Argument::Number(0.0),
-            _ if is_name(text) => Argument::Name(Symbol::new(text)),
+            "true" => ExternalArgument::Number(1.0),
+            "false" => ExternalArgument::Number(0.0),
+            _ if is_name(text) => ExternalArgument::Name(Symbol::new(text)),
             _ => match (text.parse(), text.strip_prefix('"').and_then(|t| t.strip_suffix('"'))) {
-                (Ok(number), _) => Argument::Number(number),
-                (_, Some(words)) => Argument::Text(words.to_owned()),
-                _ => Self::size(text).unwrap_or(Argument::Other),
+                (Ok(number), _) => ExternalArgument::Number(number),
+                (_, Some(words)) => ExternalArgument::Text(words.to_owned()),
+                _ => Self::size(text).unwrap_or(ExternalArgument::Other),
             },
         }
     }
@@ -55,12 +55,12 @@ impl Argument {
     fn size(text: &str) -> Option<Self> {
         let (name, dimension) = text.strip_prefix("size(")?.strip_suffix(')')?.split_once(',')?;
         let dimension = dimension.trim().parse().ok().filter(|d| *d > 0)?;
-        is_name(name.trim()).then(|| Argument::Size(Symbol::new(name.trim()), dimension))
+        is_name(name.trim()).then(|| ExternalArgument::Size(Symbol::new(name.trim()), dimension))
     }
 
     fn name(&self) -> Option<Symbol> {
         match self {
-            Argument::Name(name) => Some(*name),
+            ExternalArgument::Name(name) => Some(*name),
             _ => None,
         }
     }
@@ -83,7 +83,7 @@ impl CCall {
         Some(CCall {
             name: name.to_owned(),
             result: result.map(Symbol::new),
-            arguments: arguments(rest).into_iter().map(Argument::parse).collect(),
+            arguments: arguments(rest).into_iter().map(ExternalArgument::parse).collect(),
         })
     }
 }
@@ -126,7 +126,7 @@ pub(super) fn external_text<'a>(callee: &Callee<'a>) -> Option<&'a str> {
 
 impl<'a> ExternalCalls<'_, 'a, '_> {
     /// How an external function is carried out, if it is known.
-    pub(in crate::instance) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<Builtin> {
+    pub(in crate::instance) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<BuiltinImplementation> {
         bramah_external::builtin(&self.c_call(callee)?.name)
     }
 
@@ -136,53 +136,58 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
 
     pub(in crate::instance) fn call_external(
         &mut self,
-        how: Builtin,
+        how: BuiltinImplementation,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
-        place: Place,
-    ) -> Option<Val> {
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
+        place: FileReference,
+    ) -> Option<ModelicaValue> {
         self.instance.calls().with_inputs(callee, positional, named, place.call, |s| {
             s.externals().carry_out_external(how, callee, place)
         })
     }
 
-    fn carry_out_external(&mut self, how: Builtin, callee: &Callee<'a>, place: Place) -> Option<Val> {
+    fn carry_out_external(
+        &mut self,
+        how: BuiltinImplementation,
+        callee: &Callee<'a>,
+        place: FileReference,
+    ) -> Option<ModelicaValue> {
         let call = self.c_call(callee)?;
         self.prepare_locals(callee)?;
-        let values: Vec<Option<Val>> = call.arguments.iter().map(|a| self.input_of_c(a)).collect();
-        let given: Vec<Given> = values.iter().map(|v| self.given(v.as_ref())).collect();
+        let values: Vec<Option<ModelicaValue>> = call.arguments.iter().map(|a| self.input_of_c(a)).collect();
+        let given: Vec<ExternalValue> = values.iter().map(|v| self.given(v.as_ref())).collect();
         match how {
             #[cfg(feature = "fmi")]
-            Builtin::MockUp => self.instance.builder().mock_up(&given, place),
+            BuiltinImplementation::MockUp => self.instance.builder().mock_up(&given, place),
             #[cfg(not(feature = "fmi"))]
-            Builtin::MockUp => {
+            BuiltinImplementation::MockUp => {
                 self.instance.fail(Code::Unsupported, "this build has no functional mock-up units", place.call)
             }
-            Builtin::Nothing => Some(Val::Tuple(Vec::new().into())),
-            Builtin::Object(make) => {
+            BuiltinImplementation::Nothing => Some(ModelicaValue::Tuple(Vec::new().into())),
+            BuiltinImplementation::Object(make) => {
                 let given = self.table_given(given, place)?;
                 match make(&given) {
-                    Ok(object) => Some(Val::Object(object)),
+                    Ok(object) => Some(ModelicaValue::Object(object)),
                     Err(why) => {
                         self.instance.fail(Code::BadCall, &format!("the table cannot be used: {why}"), place.call)
                     }
                 }
             }
-            Builtin::Values(make) => match make(&given) {
+            BuiltinImplementation::Values(make) => match make(&given) {
                 Some(found) => self.external_values(found, &call, callee),
                 None => {
                     let message = format!("the arguments of `{}` must be known before the run", callee.name);
                     self.instance.fail(Code::NotConstant, &message, place.call)
                 }
             },
-            Builtin::Function(make) => {
+            BuiltinImplementation::Function(make) => {
                 let Some(function) = make(&given) else {
                     let message = format!("these arguments do not fit `{}`", callee.name);
                     return self.instance.fail(Code::BadCall, &message, place.call);
                 };
                 let object = given.iter().find_map(|g| match g {
-                    Given::Object(object) => Some(object.address()),
+                    ExternalValue::Object(object) => Some(object.address()),
                     _ => None,
                 });
                 let mut scalars = Vec::new();
@@ -194,12 +199,12 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     }
 
     /// The value of an argument that is an input of the function or written out.
-    pub(super) fn input_of_c(&mut self, argument: &Argument) -> Option<Val> {
+    pub(super) fn input_of_c(&mut self, argument: &ExternalArgument) -> Option<ModelicaValue> {
         match argument {
-            Argument::Name(name) => self.instance.local(*name).map(|i| self.instance.eval.locals[i].1.clone()),
-            Argument::Text(words) => Some(Val::text(words.as_str())),
-            Argument::Number(x) => Some(Val::Scalar(self.instance.exprs.num(*x), Type::Real)),
-            Argument::Size(..) | Argument::Other => None,
+            ExternalArgument::Name(name) => self.instance.local(*name).map(|i| self.instance.eval.locals[i].1.clone()),
+            ExternalArgument::Text(words) => Some(ModelicaValue::text(words.as_str())),
+            ExternalArgument::Number(x) => Some(ModelicaValue::Scalar(self.instance.exprs.num(*x), ScalarType::Real)),
+            ExternalArgument::Size(..) | ExternalArgument::Other => None,
         }
     }
 
@@ -216,26 +221,26 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         Some(())
     }
 
-    fn given(&self, value: Option<&Val>) -> Given {
+    fn given(&self, value: Option<&ModelicaValue>) -> ExternalValue {
         match value {
-            Some(text @ Val::Text(_)) => match text.as_text(&self.instance.exprs) {
-                Some(text) => Given::Text(text),
-                None => Given::Numbers { dims: Vec::new(), values: vec![None] },
+            Some(text @ ModelicaValue::Text(_)) => match text.as_text(&self.instance.exprs) {
+                Some(text) => ExternalValue::Text(text),
+                None => ExternalValue::Numbers { dims: Vec::new(), values: vec![None] },
             },
-            Some(Val::Object(object)) => Given::Object(object.clone()),
+            Some(ModelicaValue::Object(object)) => ExternalValue::Object(object.clone()),
             Some(value) => {
                 let mut scalars = Vec::new();
                 value.scalars(&mut scalars);
                 let values = scalars.iter().map(|e| self.instance.exprs.as_num(*e)).collect();
-                Given::Numbers { dims: value.dims().to_vec(), values }
+                ExternalValue::Numbers { dims: value.dims().to_vec(), values }
             }
-            None => Given::Numbers { dims: Vec::new(), values: Vec::new() },
+            None => ExternalValue::Numbers { dims: Vec::new(), values: Vec::new() },
         }
     }
 
     /// A table from its file, where one is named.
-    fn table_given(&mut self, mut given: Vec<Given>, place: Place) -> Option<Vec<Given>> {
-        let (Some(Given::Text(file)), Some(Given::Text(name))) = (given.first(), given.get(1)) else {
+    fn table_given(&mut self, mut given: Vec<ExternalValue>, place: FileReference) -> Option<Vec<ExternalValue>> {
+        let (Some(ExternalValue::Text(file)), Some(ExternalValue::Text(name))) = (given.first(), given.get(1)) else {
             return Some(given);
         };
         if file == NO_NAME {
@@ -244,30 +249,36 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         let name = if name == NO_NAME { String::new() } else { name.clone() };
         let matrix = self.table(&file.clone(), &name, place)?;
         let values = matrix.values.iter().copied().map(Some).collect();
-        given[2] = Given::Numbers { dims: vec![matrix.rows, matrix.columns], values };
+        given[2] = ExternalValue::Numbers { dims: vec![matrix.rows, matrix.columns], values };
         Some(given)
     }
 
     /// The outputs of a call in the order of the C call: the result, then those among the arguments.
     fn c_outputs(&mut self, call: &CCall, callee: &Callee<'a>) -> Vec<Symbol> {
-        let formals = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
-        let outputs = call.arguments.iter().filter_map(Argument::name).filter(|n| formals.iter().any(|f| f.name == *n));
+        let formals = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(CausalityPrefix::Output));
+        let outputs =
+            call.arguments.iter().filter_map(ExternalArgument::name).filter(|n| formals.iter().any(|f| f.name == *n));
         call.result.into_iter().chain(outputs).collect()
     }
 
-    fn external_values(&mut self, found: Vec<Given>, call: &CCall, callee: &Callee<'a>) -> Option<Val> {
+    fn external_values(
+        &mut self,
+        found: Vec<ExternalValue>,
+        call: &CCall,
+        callee: &Callee<'a>,
+    ) -> Option<ModelicaValue> {
         let names = self.c_outputs(call, callee);
         let mut outputs = Vec::new();
-        for f in self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(Causality::Output)) {
+        for f in self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(CausalityPrefix::Output)) {
             let at = names.iter().position(|n| *n == f.name)?;
-            let ty = self.instance.calls().declared_local(&f)?.element_type().unwrap_or(Type::Real);
+            let ty = self.instance.calls().declared_local(&f)?.element_type().unwrap_or(ScalarType::Real);
             outputs.push(match found.get(at)? {
-                Given::Text(text) => Val::text(text.as_str()),
-                Given::Object(object) => Val::Object(object.clone()),
-                Given::Numbers { dims, values } => {
-                    let number = |x: &Option<f64>| Some(Val::Scalar(self.instance.exprs.num((*x)?), ty));
-                    let mut numbers: Vec<Val> = values.iter().map(number).collect::<Option<_>>()?;
-                    if dims.is_empty() { numbers.pop()? } else { Val::array(dims.clone(), numbers) }
+                ExternalValue::Text(text) => ModelicaValue::text(text.as_str()),
+                ExternalValue::Object(object) => ModelicaValue::Object(object.clone()),
+                ExternalValue::Numbers { dims, values } => {
+                    let number = |x: &Option<f64>| Some(ModelicaValue::Scalar(self.instance.exprs.num((*x)?), ty));
+                    let mut numbers: Vec<ModelicaValue> = values.iter().map(number).collect::<Option<_>>()?;
+                    if dims.is_empty() { numbers.pop()? } else { ModelicaValue::array(dims.clone(), numbers) }
                 }
             });
         }
@@ -277,14 +288,14 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     /// A call that stays one, or its numbers where all arguments are known.
     pub(super) fn external_function(
         &mut self,
-        function: Arc<dyn External>,
+        function: Arc<dyn ExternalFunction>,
         key: &str,
         call: &CCall,
         callee: &Callee<'a>,
         scalars: &[ExprId],
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let names = self.c_outputs(call, callee);
-        let formals = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(Causality::Output));
+        let formals = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(CausalityPrefix::Output));
         let mut blanks = Vec::new();
         for name in &names {
             let f = formals.iter().find(|f| f.name == *name)?;
@@ -301,19 +312,20 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
             }
         };
         let mut results = results.into_iter();
-        let mut filled: Vec<(Symbol, Val)> = Vec::new();
+        let mut filled: Vec<(Symbol, ModelicaValue)> = Vec::new();
         for (name, blank) in blanks {
             filled.push((name, blank.map(&mut |e, _| results.next().unwrap_or(e))));
         }
-        let output =
-            |f: &crate::instance::call::Formal<'a>| filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone());
-        let outputs: Option<Vec<Val>> = formals.iter().map(output).collect();
+        let output = |f: &crate::instance::call::FormalParameter<'a>| {
+            filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone())
+        };
+        let outputs: Option<Vec<ModelicaValue>> = formals.iter().map(output).collect();
         FunctionCalls::outputs(outputs?)
     }
 
     fn external_id(
         &mut self,
-        function: Arc<dyn External>,
+        function: Arc<dyn ExternalFunction>,
         key: &str,
         name: &str,
         inputs: usize,
@@ -323,11 +335,12 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
             return id;
         }
         let small = |n: usize| u32::try_from(n).expect("few arguments");
-        let handle = Handle(function);
-        let args: Vec<Term> = (0..small(inputs)).map(Term::Slot).collect();
+        let handle = ExternalFunctionHandle(function);
+        let args: Vec<SlotExpr> = (0..small(inputs)).map(SlotExpr::Slot).collect();
         let slots: Vec<u32> = (0..outputs).map(|k| small(inputs + k)).collect();
-        let assign =
-            |(k, slot): (usize, &u32)| Stmt::Assign(*slot, Term::External(handle.clone(), small(k), args.clone()));
+        let assign = |(k, slot): (usize, &u32)| {
+            SlotStatement::Assign(*slot, SlotExpr::External(handle.clone(), small(k), args.clone()))
+        };
         let id = self.instance.exprs.add_function(Function {
             name: name.to_owned(),
             inputs: small(inputs),
@@ -343,15 +356,15 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     pub(in crate::instance) fn construct_object(
         &mut self,
         class: &crate::instance::ClassRef<'a>,
-        given: crate::instance::vectorised::Given,
-        place: Place,
-    ) -> Option<Val> {
+        given: crate::instance::vectorised::CallArguments,
+        place: FileReference,
+    ) -> Option<ModelicaValue> {
         let constructor = match self
             .instance
             .names()
-            .member(&crate::instance::lookup::Found::Class(class.clone()), Symbol::new("constructor"))
+            .member(&crate::instance::lookup::LookupResult::Class(class.clone()), Symbol::new("constructor"))
         {
-            Some(crate::instance::lookup::Found::Class(c)) => c,
+            Some(crate::instance::lookup::LookupResult::Class(c)) => c,
             _ => {
                 let message = format!("`{}` has no `constructor`", self.instance.library.full_name(class.class));
                 return self.instance.fail(Code::BadCall, &message, place.call);
@@ -378,10 +391,13 @@ mod tests {
     fn calls_are_read_as_they_are_written() {
         let call = CCall::parse(r#""C" y = f_x(a, size(b, 1), b) annotation(Library="m")"#).expect("a call");
         assert_eq!((call.name.as_str(), call.result), ("f_x", Some(Symbol::new("y"))));
-        let name = |n| Argument::Name(Symbol::new(n));
-        assert_eq!(call.arguments, [name("a"), Argument::Size(Symbol::new("b"), 1), name("b")]);
+        let name = |n| ExternalArgument::Name(Symbol::new(n));
+        assert_eq!(call.arguments, [name("a"), ExternalArgument::Size(Symbol::new("b"), 1), name("b")]);
         let literal = CCall::parse(r#"f("x, y", 2.5, true)"#).expect("a call");
-        assert_eq!(literal.arguments, [Argument::Text("x, y".into()), Argument::Number(2.5), Argument::Number(1.0)]);
+        assert_eq!(
+            literal.arguments,
+            [ExternalArgument::Text("x, y".into()), ExternalArgument::Number(2.5), ExternalArgument::Number(1.0)]
+        );
         assert!(CCall::parse("\"C\"").is_none());
     }
 }

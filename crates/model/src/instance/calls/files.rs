@@ -2,10 +2,10 @@
 //! carried out while the model is built, so that sizes may depend on them.
 
 use crate::instance::call::Callee;
-use crate::instance::value::Val;
-use crate::instance::{ExternalCalls, Node, View};
-use bramah_expr::types::Type;
-use bramah_results::table::{Axes, Matrix, read_table};
+use crate::instance::value::ModelicaValue;
+use crate::instance::{ExternalCalls, InstanceNode, LookupContext};
+use bramah_expr::types::ScalarType;
+use bramah_results::table::{TableAxes, TableMatrix, read_table};
 use bramah_syntax::ast::{ClassBody, Expr, ExprKind, Ident};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
@@ -22,14 +22,14 @@ pub(in crate::instance) enum FileFunction {
 
 /// Where a file is named, for messages.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::instance) struct Place {
+pub(in crate::instance) struct FileReference {
     /// The call.
     pub call: Span,
     /// The value of the parameter that names the file, where the call passes one on.
     pub given: Option<Span>,
 }
 
-impl Place {
+impl FileReference {
     fn span(&self) -> Span {
         self.given.unwrap_or(self.call)
     }
@@ -49,43 +49,53 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     }
 
     /// The place of a call with these arguments, the first of which names the file.
-    pub(in crate::instance) fn file_place(&mut self, first: Option<&'a Expr>, view: View, call: Span) -> Place {
+    pub(in crate::instance) fn file_place(
+        &mut self,
+        first: Option<&'a Expr>,
+        view: LookupContext,
+        call: Span,
+    ) -> FileReference {
         let given = first.and_then(|e| match &e.kind {
             ExprKind::Reference(r) if r.parts.len() == 1 => {
                 let index = *self.instance.scope(view.scope).template.by_name.get(&r.parts[0].name.name)?;
                 let node = self.instance.builder().component(view.scope, index)?;
-                let Node::Var(i) = *self.instance.node(node) else { return None };
+                let InstanceNode::Var(i) = *self.instance.node(node) else { return None };
                 self.instance.variables[i as usize].binding.as_ref().map(|b| b.expr.span)
             }
             _ => Some(e.span),
         });
-        Place { call, given }
+        FileReference { call, given }
     }
 
     pub(in crate::instance) fn call_file_function(
         &mut self,
         function: FileFunction,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
-        place: Place,
-    ) -> Option<Val> {
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
+        place: FileReference,
+    ) -> Option<ModelicaValue> {
         self.instance
             .calls()
             .with_inputs(callee, positional, named, place.call, |s| s.externals().carry_out(function, callee, place))
     }
 
-    fn carry_out(&mut self, function: FileFunction, callee: &Callee<'a>, place: Place) -> Option<Val> {
+    fn carry_out(
+        &mut self,
+        function: FileFunction,
+        callee: &Callee<'a>,
+        place: FileReference,
+    ) -> Option<ModelicaValue> {
         let (file, name) = (self.text_input("fileName", callee, place)?, self.text_input("tableName", callee, place)?);
         let matrix = self.table(&file, &name, place)?;
         let whole = |n: usize| n as f64;
         if function == FileFunction::Size {
-            let sizes =
-                [matrix.rows, matrix.columns].map(|n| Val::Scalar(self.instance.exprs.num(whole(n)), Type::Integer));
-            return Some(Val::array(vec![2], sizes.to_vec()));
+            let sizes = [matrix.rows, matrix.columns]
+                .map(|n| ModelicaValue::Scalar(self.instance.exprs.num(whole(n)), ScalarType::Integer));
+            return Some(ModelicaValue::array(vec![2], sizes.to_vec()));
         }
         let [axes, rows, columns] = ["axes", "m", "n"].map(|input| self.number_input(input));
-        let axes = axes.and_then(Axes::from_number);
+        let axes = axes.and_then(TableAxes::from_number);
         let (Some(axes), Some(rows), Some(columns)) = (axes, rows, columns) else {
             let message = format!("`{}` needs known sizes, and 0, 1 or 2 for `axes`", callee.name);
             return self.instance.fail(Code::BadCall, &message, place.call);
@@ -99,11 +109,15 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
             let message = format!("the table in `{file}` has {have}, and {rows} rows and {columns} columns are needed");
             return self.instance.fail(Code::BadData, &message, place.span());
         }
-        let values = matrix.values.iter().map(|&x| Val::Scalar(self.instance.exprs.num(x), Type::Real)).collect();
-        Some(Val::array(vec![matrix.rows, matrix.columns], values))
+        let values = matrix
+            .values
+            .iter()
+            .map(|&x| ModelicaValue::Scalar(self.instance.exprs.num(x), ScalarType::Real))
+            .collect();
+        Some(ModelicaValue::array(vec![matrix.rows, matrix.columns], values))
     }
 
-    fn input_value(&self, name: &str) -> Option<&Val> {
+    fn input_value(&self, name: &str) -> Option<&ModelicaValue> {
         self.instance.local(Symbol::new(name)).map(|i| &self.instance.eval.locals[i].1)
     }
 
@@ -111,7 +125,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         self.input_value(name)?.as_number(&self.instance.exprs)
     }
 
-    fn text_input(&mut self, name: &str, callee: &Callee<'a>, place: Place) -> Option<String> {
+    fn text_input(&mut self, name: &str, callee: &Callee<'a>, place: FileReference) -> Option<String> {
         let text = self.input_value(name).and_then(|v| v.as_text(&self.instance.exprs));
         if text.is_none() {
             let message = format!("`{name}` of `{}` must be known before the run", callee.name);
@@ -120,7 +134,12 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         text
     }
 
-    pub(in crate::instance) fn table(&mut self, file: &str, name: &str, place: Place) -> Option<Rc<Matrix>> {
+    pub(in crate::instance) fn table(
+        &mut self,
+        file: &str,
+        name: &str,
+        place: FileReference,
+    ) -> Option<Rc<TableMatrix>> {
         let id = match self.instance.library.data(file) {
             Ok(id) => id,
             Err(why) => {

@@ -1,10 +1,10 @@
 //! Functions as arguments of functions (MLS 12.4.2).
 
-use crate::instance::call::Formal;
-use crate::instance::lookup::Found;
-use crate::instance::value::Val;
-use crate::instance::{ClassRef, FunctionCalls, View};
-use bramah_syntax::ast::{ClassKind, Expr, Ident, Path, Reference};
+use crate::instance::call::FormalParameter;
+use crate::instance::lookup::LookupResult;
+use crate::instance::value::ModelicaValue;
+use crate::instance::{ClassRef, FunctionCalls, LookupContext};
+use bramah_syntax::ast::{ClassKind, ComponentReference, Expr, Ident, Path};
 use bramah_syntax::diag::Code;
 use std::rc::Rc;
 
@@ -13,8 +13,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     pub(in crate::instance) fn function_value(
         &mut self,
         class: &ClassRef<'a>,
-        bound: Vec<(Ident, Val)>,
-    ) -> Option<Val> {
+        bound: Vec<(Ident, ModelicaValue)>,
+    ) -> Option<ModelicaValue> {
         let template = self.instance.names().template(class.class, class.parent);
         if !matches!(template.kind, ClassKind::Function { .. }) {
             return None;
@@ -27,7 +27,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             self.instance.functions.push(class.clone());
             self.instance.functions.len() - 1
         });
-        Some(Val::Function(u32::try_from(at).expect("few functions"), Rc::new(bound)))
+        Some(ModelicaValue::Function(u32::try_from(at).expect("few functions"), Rc::new(bound)))
     }
 
     /// `function f(a = 1)`: a function some of whose inputs are given.
@@ -35,22 +35,22 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         &mut self,
         function: &'a Path,
         named: &'a [(Ident, Expr)],
-        view: View,
-    ) -> Option<Val> {
+        view: LookupContext,
+    ) -> Option<ModelicaValue> {
         let mut bound = Vec::with_capacity(named.len());
         for (name, e) in named {
             bound.push((*name, self.instance.evaluator().eval(e, view)?));
         }
         if let [name] = function.parts.as_slice()
             && let Some(i) = self.instance.local(name.name)
-            && let Val::Function(f, before) = self.instance.eval.locals[i].1.clone()
+            && let ModelicaValue::Function(f, before) = self.instance.eval.locals[i].1.clone()
         {
             bound.extend_from_slice(&before);
-            return Some(Val::Function(f, Rc::new(bound)));
+            return Some(ModelicaValue::Function(f, Rc::new(bound)));
         }
         let found = self.instance.names().class_at(view, function)?;
         let made = match &found {
-            Found::Class(class) => self.function_value(class, bound),
+            LookupResult::Class(class) => self.function_value(class, bound),
             _ => None,
         };
         made.or_else(|| self.instance.fail(Code::UnknownFunction, "this is not a function", function.span))
@@ -59,19 +59,19 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     /// The function that an input of the function being carried out stands for.
     pub(in crate::instance) fn functional_input(
         &self,
-        function: &Reference,
-    ) -> Option<(ClassRef<'a>, Rc<Vec<(Ident, Val)>>)> {
+        function: &ComponentReference,
+    ) -> Option<(ClassRef<'a>, Rc<Vec<(Ident, ModelicaValue)>>)> {
         let [part] = function.parts.as_slice() else { return None };
         match &self.instance.eval.locals[self.instance.local(part.name.name)?].1 {
-            Val::Function(f, bound) => Some((self.instance.functions[*f as usize].clone(), bound.clone())),
+            ModelicaValue::Function(f, bound) => Some((self.instance.functions[*f as usize].clone(), bound.clone())),
             _ => None,
         }
     }
 
     /// Whether an input takes a function.
-    pub(in crate::instance) fn is_functional(&mut self, f: &Formal<'a>) -> bool {
+    pub(in crate::instance) fn is_functional(&mut self, f: &FormalParameter<'a>) -> bool {
         match self.instance.names().lookup_path(f.view, &f.component.class) {
-            Ok(Found::Class(c)) => {
+            Ok(LookupResult::Class(c)) => {
                 matches!(self.instance.names().template(c.class, c.parent).kind, ClassKind::Function { .. })
             }
             _ => false,

@@ -1,12 +1,12 @@
 //! Outputs and protected variables of functions as they begin: with their declared values, or zeros in their shape.
 
 use crate::instance::FunctionCalls;
-use crate::instance::call::{Callee, Formal};
-use crate::instance::lookup::{Builtin, Found};
+use crate::instance::call::{Callee, FormalParameter};
+use crate::instance::lookup::{BuiltinType, LookupResult};
 use crate::instance::template::Template;
-use crate::instance::value::{Val, size_text};
+use crate::instance::value::{ModelicaValue, size_text};
 use bramah_expr::Exprs;
-use bramah_expr::types::Type;
+use bramah_expr::types::ScalarType;
 use bramah_syntax::ast::{self};
 use bramah_syntax::diag::{Code, Span};
 use bramah_syntax::symbol::Symbol;
@@ -14,7 +14,7 @@ use std::rc::Rc;
 
 impl<'a> FunctionCalls<'_, 'a, '_> {
     /// The initial value of an output or protected component of a function; zero where nothing is said.
-    pub(in crate::instance) fn declared_local(&mut self, f: &Formal<'a>) -> Option<Val> {
+    pub(in crate::instance) fn declared_local(&mut self, f: &FormalParameter<'a>) -> Option<ModelicaValue> {
         let reached = self.instance.names().reached(f.view.scope, f.index);
         let value = match reached.binding {
             Some(b) if b.access.is_empty() => Some(self.instance.evaluator().eval(b.expr, b.view)?),
@@ -34,18 +34,22 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                     );
                     return self.instance.fail(Code::SizeMismatch, &message, f.component.name.span);
                 }
-                let ty = blank.element_type().unwrap_or(Type::Real);
-                Some(if ty == Type::Real { v.with_type(ty) } else { v })
+                let ty = blank.element_type().unwrap_or(ScalarType::Real);
+                Some(if ty == ScalarType::Real { v.with_type(ty) } else { v })
             }
         }
     }
 
     /// Zeros in the declared shape.
-    pub(in crate::instance) fn blank(&mut self, f: &Formal<'a>, value: Option<&Val>) -> Option<Val> {
+    pub(in crate::instance) fn blank(
+        &mut self,
+        f: &FormalParameter<'a>,
+        value: Option<&ModelicaValue>,
+    ) -> Option<ModelicaValue> {
         let mut found = self.instance.names().class_at(f.view, &f.component.class)?;
         // `output R r(x = u)`: fields take what the declaration says of them
         let given = self.instance.names().reached(f.view.scope, f.index).args;
-        if let Found::Class(c) = &mut found
+        if let LookupResult::Class(c) = &mut found
             && !given.is_empty()
         {
             c.args = given.into_iter().chain(c.args.iter().cloned()).collect();
@@ -72,18 +76,18 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(repeated(&one, dims))
     }
 
-    pub(in crate::instance) fn blank_one(&mut self, found: &Found<'a>, span: Span) -> Option<Val> {
-        let of = |b: Builtin| match b {
-            Builtin::Real => Val::Scalar(Exprs::ZERO, Type::Real),
-            Builtin::Integer => Val::Scalar(Exprs::ZERO, Type::Integer),
-            Builtin::Boolean => Val::Scalar(Exprs::ZERO, Type::Boolean),
-            Builtin::Enumeration(i) => Val::Scalar(Exprs::ONE, Type::Enumeration(i)),
+    pub(in crate::instance) fn blank_one(&mut self, found: &LookupResult<'a>, span: Span) -> Option<ModelicaValue> {
+        let of = |b: BuiltinType| match b {
+            BuiltinType::Real => ModelicaValue::Scalar(Exprs::ZERO, ScalarType::Real),
+            BuiltinType::Integer => ModelicaValue::Scalar(Exprs::ZERO, ScalarType::Integer),
+            BuiltinType::Boolean => ModelicaValue::Scalar(Exprs::ZERO, ScalarType::Boolean),
+            BuiltinType::Enumeration(i) => ModelicaValue::Scalar(Exprs::ONE, ScalarType::Enumeration(i)),
             // an output of this type is made by what Rust knows of the function
-            Builtin::String | Builtin::Object => Val::text(""),
+            BuiltinType::String | BuiltinType::Object => ModelicaValue::text(""),
         };
         match found {
-            Found::Builtin(b) => Some(of(*b)),
-            Found::Class(c) => {
+            LookupResult::Builtin(b) => Some(of(*b)),
+            LookupResult::Class(c) => {
                 let t = self.instance.names().template(c.class, c.parent);
                 let dims = self.type_dims(&t)?;
                 if let Some(b) = t.builtin {
@@ -97,10 +101,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                     fields.push((f.name, value));
                 }
                 let class = self.instance.operators().operator_class(c);
-                let one = Val::Record(Rc::new(crate::instance::value::Record { fields, class }));
+                let one = ModelicaValue::Record(Rc::new(crate::instance::value::RecordValue { fields, class }));
                 Some(repeated(&one, dims))
             }
-            Found::Component(..) => self.instance.fail(Code::WrongClassKind, "a type is needed here", span),
+            LookupResult::Component(..) => self.instance.fail(Code::WrongClassKind, "a type is needed here", span),
         }
     }
 
@@ -123,10 +127,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
 }
 
 /// Locals so that each comes after those that its sizes and its value name (MLS 12.4.4).
-pub(in crate::instance) fn in_order_of_use<'f, 'a>(locals: &'f [Formal<'a>]) -> Vec<&'f Formal<'a>> {
+pub(in crate::instance) fn in_order_of_use<'f, 'a>(locals: &'f [FormalParameter<'a>]) -> Vec<&'f FormalParameter<'a>> {
     let named: Vec<Vec<Symbol>> =
         locals.iter().map(|f| crate::instance::deduce::names_of_declaration(f.component)).collect();
-    let mut sorted: Vec<&Formal<'a>> = Vec::with_capacity(locals.len());
+    let mut sorted: Vec<&FormalParameter<'a>> = Vec::with_capacity(locals.len());
     let mut open: Vec<usize> = (0..locals.len()).collect();
     while !open.is_empty() {
         let waits = |k: usize, on: usize| on != k && named[k].contains(&locals[on].name);
@@ -138,11 +142,11 @@ pub(in crate::instance) fn in_order_of_use<'f, 'a>(locals: &'f [Formal<'a>]) -> 
 }
 
 /// An array of these dimensions, all elements of which are one value.
-pub(in crate::instance) fn repeated(one: &Val, dims: Vec<usize>) -> Val {
+pub(in crate::instance) fn repeated(one: &ModelicaValue, dims: Vec<usize>) -> ModelicaValue {
     if dims.is_empty() {
         return one.clone();
     }
     let inner = one.dims().to_vec();
     let elements = (0..dims.iter().product()).flat_map(|_| one.elements().to_vec()).collect();
-    Val::array(dims.into_iter().chain(inner).collect(), elements)
+    ModelicaValue::array(dims.into_iter().chain(inner).collect(), elements)
 }

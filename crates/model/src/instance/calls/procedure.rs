@@ -6,18 +6,18 @@
 
 use crate::instance::FunctionCalls;
 use crate::instance::algorithm::assigned;
-use crate::instance::call::{Callee, Formal, sections};
+use crate::instance::call::{Callee, FormalParameter, sections};
 use crate::instance::calls::binding::is_input;
 use crate::instance::calls::locals::in_order_of_use;
-use crate::instance::deduce::Body;
-use crate::instance::evaluation::indices::Pick;
-use crate::instance::evaluation::state::Mode;
-use crate::instance::value::Val;
-use crate::instance::{ProcedureTranslator, View};
-use bramah_expr::function::{Function, Stmt, Term};
-use bramah_expr::types::Type;
-use bramah_expr::{ExprId, Exprs, FunctionId, Node, VarId};
-use bramah_syntax::ast::{self, Causality, Expr, ExprKind, Ident, Reference, Statement, StatementKind};
+use crate::instance::deduce::LoopBody;
+use crate::instance::evaluation::indices::SubscriptValue;
+use crate::instance::evaluation::state::EvaluationMode;
+use crate::instance::value::ModelicaValue;
+use crate::instance::{LookupContext, ProcedureTranslator};
+use bramah_expr::function::{Function, SlotExpr, SlotStatement};
+use bramah_expr::types::ScalarType;
+use bramah_expr::{ExprId, ExprNode, Exprs, FunctionId, VarId};
+use bramah_syntax::ast::{self, CausalityPrefix, ComponentReference, Expr, ExprKind, Ident, Statement, StatementKind};
 use bramah_syntax::diag::{Code, Span};
 use bramah_syntax::symbol::Symbol;
 
@@ -28,9 +28,9 @@ const ELEMENT: FunctionId = FunctionId(u32::MAX);
 
 /// The state of a translation.
 #[derive(Default)]
-pub struct Translation {
+pub struct ProcedureDraft {
     slots: u32,
-    statements: Vec<Stmt>,
+    statements: Vec<SlotStatement>,
     /// What a loop of a model reads of the model, in its first slots; `None` in functions, which read their inputs only.
     captures: Option<Vec<ExprId>>,
 }
@@ -40,12 +40,12 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     pub(in crate::instance) fn call_procedure(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let values = self.instance.calls().with_inputs(callee, positional, named, span, |s| {
-            Some(s.eval.locals[s.eval.frame..].iter().map(|(_, v)| v.clone()).collect::<Vec<Val>>())
+            Some(s.eval.locals[s.eval.frame..].iter().map(|(_, v)| v.clone()).collect::<Vec<ModelicaValue>>())
         })?;
         let key = self.procedure_key(callee, &values);
         let known = self.instance.procedures.get(&key).cloned();
@@ -71,17 +71,17 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     }
 
     /// Whole numbers and truth values that are known are built in: sizes and loop bounds depend on them.
-    fn specialised(&self, v: &Val) -> bool {
+    fn specialised(&self, v: &ModelicaValue) -> bool {
         match v {
-            Val::Scalar(e, Type::Integer | Type::Boolean | Type::Enumeration(_)) => {
+            ModelicaValue::Scalar(e, ScalarType::Integer | ScalarType::Boolean | ScalarType::Enumeration(_)) => {
                 self.instance.exprs.as_num(*e).is_some()
             }
-            Val::Text(_) => true,
+            ModelicaValue::Text(_) => true,
             _ => false,
         }
     }
 
-    fn procedure_key(&self, callee: &Callee<'a>, values: &[Val]) -> String {
+    fn procedure_key(&self, callee: &Callee<'a>, values: &[ModelicaValue]) -> String {
         let mut key = format!("{}@{}", callee.name, callee.scope.0);
         for v in values {
             if self.specialised(v) {
@@ -90,7 +90,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 let mut scalars = Vec::new();
                 v.scalars(&mut scalars);
                 key.push_str(&format!(",{:?}{}", v.dims(), scalars.len()));
-                if let Val::Function(f, _) = v {
+                if let ModelicaValue::Function(f, _) = v {
                     key.push_str(&format!("f{f}"));
                 }
             }
@@ -101,13 +101,13 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     fn translate(
         &mut self,
         callee: &Callee<'a>,
-        values: &[Val],
+        values: &[ModelicaValue],
         key: String,
         span: Span,
-    ) -> Option<(FunctionId, Vec<Val>)> {
+    ) -> Option<(FunctionId, Vec<ModelicaValue>)> {
         let outer = std::mem::take(&mut self.instance.eval.translation);
         let not_inline = std::mem::replace(&mut self.instance.eval.not_inline, false);
-        let change = |m: &mut Mode| (m.procedure, m.constant) = (true, false);
+        let change = |m: &mut EvaluationMode| (m.procedure, m.constant) = (true, false);
         let result =
             self.instance.in_mode(change, |s| s.in_frame(|s| s.procedures().translate_body(callee, values, key)));
         let refused = std::mem::replace(&mut self.instance.eval.not_inline, not_inline);
@@ -119,7 +119,12 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         result
     }
 
-    fn translate_body(&mut self, callee: &Callee<'a>, values: &[Val], key: String) -> Option<(FunctionId, Vec<Val>)> {
+    fn translate_body(
+        &mut self,
+        callee: &Callee<'a>,
+        values: &[ModelicaValue],
+        key: String,
+    ) -> Option<(FunctionId, Vec<ModelicaValue>)> {
         let inputs = self.instance.calls().formals(callee, is_input);
         for (f, v) in inputs.iter().zip(values) {
             let local = if self.specialised(v) { v.clone() } else { self.slots_like(v) };
@@ -127,9 +132,9 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         }
         let count = self.instance.eval.translation.slots;
         let locals = self.locals_in_slots(callee)?;
-        let shapes: Vec<Val> = locals
+        let shapes: Vec<ModelicaValue> = locals
             .iter()
-            .filter(|f| f.component.prefix.causality == Some(Causality::Output))
+            .filter(|f| f.component.prefix.causality == Some(CausalityPrefix::Output))
             .filter_map(|f| self.instance.local(f.name).map(|i| self.instance.eval.locals[i].1.clone()))
             .collect();
         let mut outputs = Vec::new();
@@ -154,7 +159,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     }
 
     /// Outputs and protected variables in slots, with the values that they begin with.
-    fn locals_in_slots(&mut self, callee: &Callee<'a>) -> Option<Vec<Formal<'a>>> {
+    fn locals_in_slots(&mut self, callee: &Callee<'a>) -> Option<Vec<FormalParameter<'a>>> {
         let locals = self.instance.calls().formals(callee, |c, p| !is_input(c, p));
         for f in in_order_of_use(&locals) {
             let value = self.instance.calls().declared_local(f)?;
@@ -167,7 +172,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
 
     /// Carries out a loop of a model's algorithm section as a procedure of what it reads, for it runs as often as
     /// changing values say. Its relations make no events (MLS 11.2.3).
-    pub(in crate::instance) fn loop_as_procedure(&mut self, s: &'a Statement, view: View) -> Option<()> {
+    pub(in crate::instance) fn loop_as_procedure(&mut self, s: &'a Statement, view: LookupContext) -> Option<()> {
         let changed = self.assigned_locals(s)?;
         let before = self.instance.eval.locals.clone();
         let outer = std::mem::take(&mut self.instance.eval.translation);
@@ -177,7 +182,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         for _ in 0..2 {
             self.instance.eval.locals.clone_from(&before);
             let slots = u32::try_from(captures.len()).expect("limited sizes");
-            self.instance.eval.translation = Translation { slots, statements: Vec::new(), captures: Some(captures) };
+            self.instance.eval.translation = ProcedureDraft { slots, statements: Vec::new(), captures: Some(captures) };
             made = self.instance.in_mode(|m| m.procedure = true, |i| i.procedures().translate_loop(s, &changed, view));
             captures = self.instance.eval.translation.captures.take().unwrap_or_default();
             if made.is_none() {
@@ -222,7 +227,12 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     }
 
     /// The slots in which the changed variables end.
-    fn translate_loop(&mut self, s: &'a Statement, changed: &[usize], view: View) -> Option<Vec<Val>> {
+    fn translate_loop(
+        &mut self,
+        s: &'a Statement,
+        changed: &[usize],
+        view: LookupContext,
+    ) -> Option<Vec<ModelicaValue>> {
         for &i in changed {
             let value = self.instance.eval.locals[i].1.clone();
             let slots = self.slots_like(&value);
@@ -234,7 +244,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     }
 
     /// Fresh slots in the shape of a value.
-    fn slots_like(&mut self, v: &Val) -> Val {
+    fn slots_like(&mut self, v: &ModelicaValue) -> ModelicaValue {
         let mut pool = std::mem::take(&mut self.instance.exprs);
         let slots = &mut self.instance.eval.translation.slots;
         let made = v.map(&mut |_, _| {
@@ -247,49 +257,49 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
 
     fn slot(&self, e: ExprId) -> Option<u32> {
         match self.instance.exprs.node(e) {
-            Node::Var(v) if v.0 >= LOCAL => Some(v.0 - LOCAL),
+            ExprNode::Var(v) if v.0 >= LOCAL => Some(v.0 - LOCAL),
             _ => None,
         }
     }
 
-    fn emit(&mut self, s: Stmt) {
+    fn emit(&mut self, s: SlotStatement) {
         self.instance.eval.translation.statements.push(s);
     }
 
     /// Stores a value into slots; several at once go through temporaries, as all are read before any is written.
-    fn store(&mut self, slots: &Val, value: &Val) {
+    fn store(&mut self, slots: &ModelicaValue, value: &ModelicaValue) {
         let (mut to, mut from) = (Vec::new(), Vec::new());
         slots.scalars(&mut to);
         value.scalars(&mut from);
-        let terms: Vec<Term> = from.iter().map(|&e| self.term(e)).collect();
+        let terms: Vec<SlotExpr> = from.iter().map(|&e| self.term(e)).collect();
         let targets: Vec<u32> = to.iter().filter_map(|&e| self.slot(e)).collect();
         if terms.len() == 1 {
-            self.emit(Stmt::Assign(targets[0], terms[0].clone()));
+            self.emit(SlotStatement::Assign(targets[0], terms[0].clone()));
             return;
         }
         let first = self.instance.eval.translation.slots;
         self.instance.eval.translation.slots += u32::try_from(terms.len()).expect("limited sizes");
         for (i, t) in (first..).zip(terms) {
-            self.emit(Stmt::Assign(i, t));
+            self.emit(SlotStatement::Assign(i, t));
         }
         for (i, t) in (first..).zip(targets) {
-            self.emit(Stmt::Assign(t, Term::Slot(i)));
+            self.emit(SlotStatement::Assign(t, SlotExpr::Slot(i)));
         }
     }
 
     /// Translates statements into a list of their own.
-    fn nested(&mut self, f: impl FnOnce(&mut Self) -> Option<()>) -> Option<Vec<Stmt>> {
+    fn nested(&mut self, f: impl FnOnce(&mut Self) -> Option<()>) -> Option<Vec<SlotStatement>> {
         let outer = std::mem::take(&mut self.instance.eval.translation.statements);
         let done = f(self);
         let inner = std::mem::replace(&mut self.instance.eval.translation.statements, outer);
         done.map(|()| inner)
     }
 
-    fn procedure_statements(&mut self, statements: &'a [Statement], view: View) -> Option<()> {
+    fn procedure_statements(&mut self, statements: &'a [Statement], view: LookupContext) -> Option<()> {
         statements.iter().try_for_each(|s| self.procedure_statement(s, view))
     }
 
-    fn procedure_statement(&mut self, s: &'a Statement, view: View) -> Option<()> {
+    fn procedure_statement(&mut self, s: &'a Statement, view: LookupContext) -> Option<()> {
         match &s.kind {
             StatementKind::Assign(target, value) => {
                 let value = self.instance.evaluator().eval(value, view)?;
@@ -297,7 +307,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
             }
             StatementKind::AssignTuple(targets, call) => {
                 let value = self.instance.evaluator().eval_all(call, view)?;
-                let Val::Tuple(values) = &value else {
+                let ModelicaValue::Tuple(values) = &value else {
                     return self.instance.fail(Code::BadCall, "this function has one result only", s.span);
                 };
                 for (target, v) in targets.iter().zip(values.iter()) {
@@ -314,24 +324,24 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 let c = self.instance.evaluator().eval(condition, view)?;
                 let test = self.boolean_term(&c, condition.span)?;
                 let body = self.nested(|s| s.procedure_statements(body, view))?;
-                self.emit(Stmt::While(test, body));
+                self.emit(SlotStatement::While(test, body));
                 Some(())
             }
             StatementKind::When(_) => {
                 self.instance.fail(Code::Unsupported, "`when` cannot stand in a function", s.span)
             }
             StatementKind::Break => {
-                self.emit(Stmt::Break);
+                self.emit(SlotStatement::Break);
                 Some(())
             }
             StatementKind::Return => {
-                self.emit(Stmt::Return);
+                self.emit(SlotStatement::Return);
                 Some(())
             }
         }
     }
 
-    fn procedure_call_statement(&mut self, call: &'a Expr, view: View) -> Option<()> {
+    fn procedure_call_statement(&mut self, call: &'a Expr, view: LookupContext) -> Option<()> {
         if let ExprKind::Call { function, args, .. } = &call.kind
             && function.parts[0].name.name == "assert"
         {
@@ -341,7 +351,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 .get(1)
                 .and_then(|m| self.instance.evaluator().eval(m, view))
                 .map(|v| v.in_words(&self.instance.exprs));
-            self.emit(Stmt::Assert(test, text.unwrap_or_default()));
+            self.emit(SlotStatement::Assert(test, text.unwrap_or_default()));
             return Some(());
         }
         self.instance.evaluator().eval_all(call, view).map(|_| ())
@@ -351,10 +361,10 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     pub(in crate::instance) fn procedure_body(
         &mut self,
         callee: &Callee<'a>,
-        positional: Vec<Val>,
-        named: Vec<(Ident, Val)>,
+        positional: Vec<ModelicaValue>,
+        named: Vec<(Ident, ModelicaValue)>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         self.instance.calls().with_inputs(callee, positional, named, span, |s| {
             s.procedures().locals_in_slots(callee)?;
             for (section, view) in sections(callee) {
@@ -363,18 +373,24 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 }
                 s.procedures().procedure_statements(section, view)?;
             }
-            Some(Val::Tuple(Vec::new().into()))
+            Some(ModelicaValue::Tuple(Vec::new().into()))
         })
     }
 
-    fn boolean_term(&mut self, v: &Val, span: Span) -> Option<Term> {
+    fn boolean_term(&mut self, v: &ModelicaValue, span: Span) -> Option<SlotExpr> {
         match v.scalar() {
-            Some((e, Type::Boolean)) => Some(self.term(e)),
+            Some((e, ScalarType::Boolean)) => Some(self.term(e)),
             _ => self.instance.evaluator().wrong_type("a Boolean", v, span),
         }
     }
 
-    fn procedure_assign(&mut self, target: &'a Expr, value: &Val, view: View, span: Span) -> Option<()> {
+    fn procedure_assign(
+        &mut self,
+        target: &'a Expr,
+        value: &ModelicaValue,
+        view: LookupContext,
+        span: Span,
+    ) -> Option<()> {
         let (r, i) = self.instance.statements().assigned_local(target)?;
         let name = r.parts[0].name;
         let value = value.first_output();
@@ -404,7 +420,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     }
 
     /// Whether a protected variable of a function takes the size of what is assigned to it; outputs are sized before.
-    fn takes_any_size(&mut self, view: View, name: Symbol) -> bool {
+    fn takes_any_size(&mut self, view: LookupContext, name: Symbol) -> bool {
         self.instance.statements().is_flexible(view, name)
             && self.instance.statements().declaration(view, name).is_some_and(|c| c.prefix.causality.is_none())
     }
@@ -413,15 +429,15 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     #[allow(clippy::too_many_arguments, reason = "the pieces of one assignment")]
     fn store_element(
         &mut self,
-        place: &Val,
+        place: &ModelicaValue,
         part: &'a ast::ReferencePart,
-        r: &Reference,
+        r: &ComponentReference,
         k: usize,
-        value: &Val,
-        view: View,
+        value: &ModelicaValue,
+        view: LookupContext,
         span: Span,
     ) -> Option<Option<()>> {
-        let Val::Array { dims, elements } = place else { return Some(None) };
+        let ModelicaValue::Array { dims, elements } = place else { return Some(None) };
         if part.subscripts.len() != dims.len() {
             return Some(None);
         }
@@ -430,7 +446,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         for (i, (s, &n)) in part.subscripts.iter().zip(dims).enumerate() {
             picks.push(self.instance.evaluator().index(s, (n, by.get(i).copied()), view, span)?);
         }
-        if !picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
+        if !picks.iter().any(|p| matches!(p, SubscriptValue::Symbolic(_))) {
             return Some(None);
         }
         let base = elements.first().and_then(|v| v.scalar()).and_then(|(e, _)| self.slot(e));
@@ -440,20 +456,20 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         let offset = self.offset(dims, &picks);
         let (offset, value) = (self.term(offset), self.term(e));
         let len = u32::try_from(elements.len()).expect("limited sizes");
-        self.emit(Stmt::AssignAt { base, len, offset, value });
+        self.emit(SlotStatement::AssignAt { base, len, offset, value });
         Some(Some(()))
     }
 
     /// The row-major offset of an element, from 0.
-    fn offset(&mut self, dims: &[usize], picks: &[Pick]) -> ExprId {
+    fn offset(&mut self, dims: &[usize], picks: &[SubscriptValue]) -> ExprId {
         let mut offset = Exprs::ZERO;
         for (p, &d) in picks.iter().zip(dims) {
             let size = self.instance.exprs.num(d as f64);
             offset = self.instance.exprs.mul(offset, size);
             let place = match p {
-                Pick::One(i) => self.instance.exprs.num(*i as f64),
-                Pick::Symbolic(e) => self.instance.exprs.sub(*e, Exprs::ONE),
-                Pick::Many(_) => Exprs::ZERO,
+                SubscriptValue::One(i) => self.instance.exprs.num(*i as f64),
+                SubscriptValue::Symbolic(e) => self.instance.exprs.sub(*e, Exprs::ONE),
+                SubscriptValue::Many(_) => Exprs::ZERO,
             };
             offset = self.instance.exprs.add(offset, place);
         }
@@ -464,10 +480,10 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     pub(in crate::instance) fn indexed_slot(
         &mut self,
         dims: &[usize],
-        elements: &[Val],
-        picks: &[Pick],
-    ) -> Option<Val> {
-        if picks.iter().any(|p| matches!(p, Pick::Many(_))) {
+        elements: &[ModelicaValue],
+        picks: &[SubscriptValue],
+    ) -> Option<ModelicaValue> {
+        if picks.iter().any(|p| matches!(p, SubscriptValue::Many(_))) {
             return None;
         }
         let ty = elements.first()?.scalar()?.1;
@@ -482,21 +498,21 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 self.instance.eval.translation.slots += u32::try_from(scalars.len()).expect("limited sizes");
                 for (s, e) in (base..).zip(scalars) {
                     let t = self.term(e);
-                    self.emit(Stmt::Assign(s, t));
+                    self.emit(SlotStatement::Assign(s, t));
                 }
                 base
             }
         };
         let offset = self.offset(dims, picks);
         let len = self.instance.exprs.num(elements.len() as f64);
-        Some(Val::Scalar(self.instance.exprs.call(ELEMENT, base, &[offset, len]), ty))
+        Some(ModelicaValue::Scalar(self.instance.exprs.call(ELEMENT, base, &[offset, len]), ty))
     }
 
     fn procedure_if(
         &mut self,
         branches: &'a [(Expr, Vec<Statement>)],
         otherwise: &'a [Statement],
-        view: View,
+        view: LookupContext,
     ) -> Option<()> {
         let mut tests = Vec::new();
         for (condition, body) in branches {
@@ -511,12 +527,17 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         if tests.is_empty() {
             self.instance.eval.translation.statements.extend(otherwise);
         } else {
-            self.emit(Stmt::If(tests, otherwise));
+            self.emit(SlotStatement::If(tests, otherwise));
         }
         Some(())
     }
 
-    fn procedure_for(&mut self, iterators: &'a [ast::Iterator], body: &'a [Statement], view: View) -> Option<()> {
+    fn procedure_for(
+        &mut self,
+        iterators: &'a [ast::ForIndex],
+        body: &'a [Statement],
+        view: LookupContext,
+    ) -> Option<()> {
         let Some((first, rest)) = iterators.split_first() else { return self.procedure_statements(body, view) };
         match first.range.as_ref().map(|r| &r.kind) {
             Some(ExprKind::Range { from, step, to }) => {
@@ -526,10 +547,10 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                     None => self.instance.evaluator().integer(1.0),
                 };
                 let to = self.instance.evaluator().eval(to, view)?;
-                let ty = from.element_type().unwrap_or(Type::Integer);
-                let bounds: Option<Vec<Term>> =
+                let ty = from.element_type().unwrap_or(ScalarType::Integer);
+                let bounds: Option<Vec<SlotExpr>> =
                     [from, step, to].iter().map(|v| v.scalar().map(|(e, _)| self.term(e))).collect();
-                let Some([from, step, to]) = bounds.and_then(|b| <[Term; 3]>::try_from(b).ok()) else {
+                let Some([from, step, to]) = bounds.and_then(|b| <[SlotExpr; 3]>::try_from(b).ok()) else {
                     return self.instance.fail(
                         Code::TypeMismatch,
                         "the bounds of a range are numbers",
@@ -539,11 +560,11 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 self.loop_over(first.name.name, ty, (from, step, to), None, rest, body, view)
             }
             _ => {
-                let values = self.instance.evaluator().iterate(first, Body::Statements(body), view)?;
+                let values = self.instance.evaluator().iterate(first, LoopBody::Statements(body), view)?;
                 let n = values.len();
-                let Some(ty) = values.first().and_then(Val::element_type) else { return Some(()) };
-                let array = Val::array(vec![n], values);
-                let bounds = (Term::Num(1.0), Term::Num(1.0), Term::Num(n as f64));
+                let Some(ty) = values.first().and_then(ModelicaValue::element_type) else { return Some(()) };
+                let array = ModelicaValue::array(vec![n], values);
+                let bounds = (SlotExpr::Num(1.0), SlotExpr::Num(1.0), SlotExpr::Num(n as f64));
                 self.loop_over(first.name.name, ty, bounds, Some(array), rest, body, view)
             }
         }
@@ -553,75 +574,77 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     fn loop_over(
         &mut self,
         name: Symbol,
-        ty: Type,
-        bounds: (Term, Term, Term),
-        array: Option<Val>,
-        rest: &'a [ast::Iterator],
+        ty: ScalarType,
+        bounds: (SlotExpr, SlotExpr, SlotExpr),
+        array: Option<ModelicaValue>,
+        rest: &'a [ast::ForIndex],
         body: &'a [Statement],
-        view: View,
+        view: LookupContext,
     ) -> Option<()> {
-        let counter = self.slots_like(&Val::Scalar(Exprs::ZERO, Type::Integer));
+        let counter = self.slots_like(&ModelicaValue::Scalar(Exprs::ZERO, ScalarType::Integer));
         let (index, _) = counter.scalar()?;
         let slot = self.slot(index)?;
         let value = match &array {
-            None => Val::Scalar(index, ty),
-            Some(a) => self.indexed_slot(a.dims(), a.elements(), &[Pick::Symbolic(index)])?,
+            None => ModelicaValue::Scalar(index, ty),
+            Some(a) => self.indexed_slot(a.dims(), a.elements(), &[SubscriptValue::Symbolic(index)])?,
         };
         self.instance.eval.locals.push((name, value));
         let body = self.nested(|s| s.procedure_for(rest, body, view));
         self.instance.eval.locals.pop();
         let (from, step, to) = bounds;
-        self.emit(Stmt::For { slot, from, step, to, body: body? });
+        self.emit(SlotStatement::For { slot, from, step, to, body: body? });
         Some(())
     }
 
     /// An expression of the pool as a term over slots.
-    fn term(&mut self, e: ExprId) -> Term {
+    fn term(&mut self, e: ExprId) -> SlotExpr {
         match self.instance.exprs.node(e) {
-            Node::Num(bits) => Term::Num(f64::from_bits(bits)),
-            Node::Var(v) if v.0 >= LOCAL => Term::Slot(v.0 - LOCAL),
+            ExprNode::Num(bits) => SlotExpr::Num(f64::from_bits(bits)),
+            ExprNode::Var(v) if v.0 >= LOCAL => SlotExpr::Slot(v.0 - LOCAL),
             _ if self.instance.eval.translation.captures.is_some() && !self.uses_slots(e) => self.captured(e),
-            Node::Unary(op, a) => Term::Unary(op, self.boxed(a)),
-            Node::Binary(op, a, b) => Term::Binary(op, self.boxed(a), self.boxed(b)),
-            Node::Rel(rel, a, b) | Node::EventRel(rel, a, b) => Term::Rel(rel, self.boxed(a), self.boxed(b)),
-            Node::EventFloor(a) => Term::Unary(bramah_expr::Unary::Floor, self.boxed(a)),
-            Node::If(c, a, b) => Term::If(self.boxed(c), self.boxed(a), self.boxed(b)),
-            Node::Homotopy(a, _) => self.term(a),
-            Node::Call(ELEMENT, base, args) => {
+            ExprNode::Unary(op, a) => SlotExpr::Unary(op, self.boxed(a)),
+            ExprNode::Binary(op, a, b) => SlotExpr::Binary(op, self.boxed(a), self.boxed(b)),
+            ExprNode::Rel(rel, a, b) | ExprNode::EventRel(rel, a, b) => {
+                SlotExpr::Rel(rel, self.boxed(a), self.boxed(b))
+            }
+            ExprNode::EventFloor(a) => SlotExpr::Unary(bramah_expr::UnaryFunction::Floor, self.boxed(a)),
+            ExprNode::If(c, a, b) => SlotExpr::If(self.boxed(c), self.boxed(a), self.boxed(b)),
+            ExprNode::Homotopy(a, _) => self.term(a),
+            ExprNode::Call(ELEMENT, base, args) => {
                 let args = self.instance.exprs.args(args);
                 let (offset, len) = (args[0], self.instance.exprs.as_num(args[1]).unwrap_or(0.0) as u32);
-                Term::At { base, len, offset: self.boxed(offset) }
+                SlotExpr::At { base, len, offset: self.boxed(offset) }
             }
-            Node::Call(f, output, args) => {
+            ExprNode::Call(f, output, args) => {
                 let args = self.instance.exprs.args(args).to_vec();
-                Term::Call(f, output, args.into_iter().map(|a| self.term(a)).collect())
+                SlotExpr::Call(f, output, args.into_iter().map(|a| self.term(a)).collect())
             }
             // Nothing else can be named in a function; not a number makes a mistake of ours visible.
-            _ => Term::Num(f64::NAN),
+            _ => SlotExpr::Num(f64::NAN),
         }
     }
 
-    fn boxed(&mut self, e: ExprId) -> Box<Term> {
+    fn boxed(&mut self, e: ExprId) -> Box<SlotExpr> {
         Box::new(self.term(e))
     }
 
     fn uses_slots(&self, e: ExprId) -> bool {
         let slot = |e: &ExprId| match self.instance.exprs.node(*e) {
-            Node::Var(v) => v.0 >= LOCAL,
-            Node::Call(f, ..) => f == ELEMENT,
+            ExprNode::Var(v) => v.0 >= LOCAL,
+            ExprNode::Call(f, ..) => f == ELEMENT,
             _ => false,
         };
         self.instance.exprs.reachable(&[e], |_| true).iter().any(slot)
     }
 
     /// An expression of the model that a loop reads, in the slot it is handed in.
-    fn captured(&mut self, e: ExprId) -> Term {
+    fn captured(&mut self, e: ExprId) -> SlotExpr {
         let captures = self.instance.eval.translation.captures.get_or_insert_default();
         let at = captures.iter().position(|&c| c == e).unwrap_or_else(|| {
             captures.push(e);
             captures.len() - 1
         });
-        Term::Slot(u32::try_from(at).expect("limited sizes"))
+        SlotExpr::Slot(u32::try_from(at).expect("limited sizes"))
     }
 }
 

@@ -1,21 +1,21 @@
 //! Functions of single values called with arrays: one call for each element (MLS 12.4.6).
 
 use crate::instance::FunctionCalls;
-use crate::instance::call::{Callee, Formal};
+use crate::instance::call::{Callee, FormalParameter};
 use crate::instance::calls::binding::is_input;
-use crate::instance::lookup::Found;
-use crate::instance::value::{Val, stack};
+use crate::instance::lookup::LookupResult;
+use crate::instance::value::{ModelicaValue, stack};
 use bramah_syntax::ast::Ident;
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
 /// The arguments of a call.
 #[derive(Clone)]
-pub(in crate::instance) struct Given {
+pub(in crate::instance) struct CallArguments {
     /// By place.
-    pub positional: Vec<Val>,
+    pub positional: Vec<ModelicaValue>,
     /// By name.
-    pub named: Vec<(Ident, Val)>,
+    pub named: Vec<(Ident, ModelicaValue)>,
 }
 
 impl<'a> FunctionCalls<'_, 'a, '_> {
@@ -23,9 +23,9 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     pub(in crate::instance) fn call_elementwise(
         &mut self,
         callee: &Callee<'a>,
-        given: Given,
+        given: CallArguments,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let mut values = given.positional.iter().chain(given.named.iter().map(|(_, v)| v));
         if values.all(|v| v.dims().is_empty()) {
             return self.call_function(callee, given.positional, given.named, span);
@@ -36,15 +36,15 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         };
         let count: usize = dims.iter().product();
         if count == 0 {
-            return Some(Val::array(dims, Vec::new()));
+            return Some(ModelicaValue::array(dims, Vec::new()));
         }
-        let mut extra = |f: Option<&Formal<'a>>, v: &Val| f.map_or(0, |f| self.extra_dims(f, v));
+        let mut extra = |f: Option<&FormalParameter<'a>>, v: &ModelicaValue| f.map_or(0, |f| self.extra_dims(f, v));
         let by_place: Vec<usize> = given.positional.iter().enumerate().map(|(k, v)| extra(inputs.get(k), v)).collect();
         let by_name: Vec<usize> =
             given.named.iter().map(|(n, v)| extra(inputs.iter().find(|f| f.name == n.name), v)).collect();
         let mut results = Vec::with_capacity(count);
         for i in 0..count {
-            let one = |v: &Val, extra: usize| if extra > 0 { block(v, extra, i) } else { v.clone() };
+            let one = |v: &ModelicaValue, extra: usize| if extra > 0 { block(v, extra, i) } else { v.clone() };
             let positional = given.positional.iter().zip(&by_place).map(|(v, &n)| one(v, n)).collect();
             let named = given.named.iter().zip(&by_name).map(|((name, v), &n)| (*name, one(v, n))).collect();
             results.push(self.call_function(callee, positional, named, span)?);
@@ -56,11 +56,11 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     fn shared_dims(
         &mut self,
         callee: &Callee<'a>,
-        inputs: &[Formal<'a>],
-        given: &Given,
+        inputs: &[FormalParameter<'a>],
+        given: &CallArguments,
         span: Span,
     ) -> Option<Option<Vec<usize>>> {
-        let mut shared: Option<(&Formal<'a>, Vec<usize>)> = None;
+        let mut shared: Option<(&FormalParameter<'a>, Vec<usize>)> = None;
         let by_place = inputs.iter().zip(&given.positional);
         let by_name = given.named.iter().filter_map(|(n, v)| Some((inputs.iter().find(|f| f.name == n.name)?, v)));
         for (f, v) in by_place.chain(by_name) {
@@ -90,13 +90,13 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     }
 
     /// How many more dimensions a value has than the input it is given to.
-    fn extra_dims(&mut self, f: &Formal<'a>, v: &Val) -> usize {
+    fn extra_dims(&mut self, f: &FormalParameter<'a>, v: &ModelicaValue) -> usize {
         let declared = f.component.subscripts.len();
         if v.dims().len() <= declared {
             return 0;
         }
         let of_type = match self.instance.names().lookup_path(f.view, &f.component.class) {
-            Ok(Found::Class(c)) => {
+            Ok(LookupResult::Class(c)) => {
                 self.instance.names().template(c.class, c.parent).dims.iter().map(|(s, _)| s.len()).sum()
             }
             _ => 0,
@@ -105,38 +105,38 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     }
 
     /// The results of all calls as arrays, one for each output.
-    fn gathered(&mut self, dims: Vec<usize>, results: Vec<Val>, span: Span) -> Option<Val> {
+    fn gathered(&mut self, dims: Vec<usize>, results: Vec<ModelicaValue>, span: Span) -> Option<ModelicaValue> {
         let outputs = match &results[0] {
-            Val::Tuple(first) => first.len(),
+            ModelicaValue::Tuple(first) => first.len(),
             _ => return self.shaped(dims, results, span),
         };
         let mut arrays = Vec::with_capacity(outputs);
         for k in 0..outputs {
-            let pick = |r: &Val| match r {
-                Val::Tuple(values) => values[k].clone(),
+            let pick = |r: &ModelicaValue| match r {
+                ModelicaValue::Tuple(values) => values[k].clone(),
                 other => other.clone(),
             };
             arrays.push(self.shaped(dims.clone(), results.iter().map(pick).collect(), span)?);
         }
-        Some(Val::Tuple(Rc::new(arrays)))
+        Some(ModelicaValue::Tuple(Rc::new(arrays)))
     }
 
-    fn shaped(&mut self, dims: Vec<usize>, results: Vec<Val>, span: Span) -> Option<Val> {
-        let shapes: Vec<String> = results.iter().map(Val::describe).collect();
-        let Some(Val::Array { dims: stacked, elements }) = stack(results) else {
+    fn shaped(&mut self, dims: Vec<usize>, results: Vec<ModelicaValue>, span: Span) -> Option<ModelicaValue> {
+        let shapes: Vec<String> = results.iter().map(ModelicaValue::describe).collect();
+        let Some(ModelicaValue::Array { dims: stacked, elements }) = stack(results) else {
             let message = format!("the calls for each element differ in size: {}", shapes.join(", "));
             return self.instance.fail(Code::SizeMismatch, &message, span);
         };
-        Some(Val::Array { dims: dims.into_iter().chain(stacked[1..].iter().copied()).collect(), elements })
+        Some(ModelicaValue::Array { dims: dims.into_iter().chain(stacked[1..].iter().copied()).collect(), elements })
     }
 }
 
 /// The part of an array with a number among those that its first dimensions count, row by row.
-fn block(v: &Val, outer: usize, number: usize) -> Val {
+fn block(v: &ModelicaValue, outer: usize, number: usize) -> ModelicaValue {
     let inner = v.dims()[outer..].to_vec();
     let step: usize = inner.iter().product();
     if inner.is_empty() {
         return v.elements()[number].clone();
     }
-    Val::array(inner, v.elements()[number * step..(number + 1) * step].to_vec())
+    ModelicaValue::array(inner, v.elements()[number * step..(number + 1) * step].to_vec())
 }

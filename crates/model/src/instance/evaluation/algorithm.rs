@@ -1,22 +1,24 @@
 //! Statements carried out on symbolic values: what an algorithm computes, as expressions.
 
-use crate::instance::deduce::Body;
-use crate::instance::evaluation::indices::Pick;
+use crate::instance::deduce::LoopBody;
+use crate::instance::evaluation::indices::SubscriptValue;
 use crate::instance::evaluation::indices::places;
-use crate::instance::lookup::Found;
-use crate::instance::template::Kind;
-use crate::instance::value::{Val, size_text};
-use crate::instance::{Statements, View};
-use bramah_expr::types::{MessagePart, Type, Variability};
-use bramah_expr::{ExprId, Exprs, Rel};
-use bramah_syntax::ast::{Component, Expr, ExprKind, Reference, ReferencePart, Statement, StatementKind, Subscript};
+use crate::instance::lookup::LookupResult;
+use crate::instance::template::TemplateElementKind;
+use crate::instance::value::{ModelicaValue, size_text};
+use crate::instance::{LookupContext, Statements};
+use bramah_expr::types::{MessagePart, ScalarType, Variability};
+use bramah_expr::{ExprId, Exprs, RelationalOp};
+use bramah_syntax::ast::{
+    ComponentDeclaration, ComponentReference, Expr, ExprKind, ReferencePart, Statement, StatementKind, Subscript,
+};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
 /// How a sequence of statements ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Flow {
+pub enum StatementFlow {
     /// At its end.
     Next,
     /// By `break`.
@@ -27,22 +29,22 @@ pub enum Flow {
     BreakIf(ExprId),
 }
 
-impl Flow {
+impl StatementFlow {
     /// When a loop is left; `None` for a `return`.
     fn left(self) -> Option<ExprId> {
         match self {
-            Flow::Next => Some(Exprs::ZERO),
-            Flow::Break => Some(Exprs::ONE),
-            Flow::BreakIf(condition) => Some(condition),
-            Flow::Return => None,
+            StatementFlow::Next => Some(Exprs::ZERO),
+            StatementFlow::Break => Some(Exprs::ONE),
+            StatementFlow::BreakIf(condition) => Some(condition),
+            StatementFlow::Return => None,
         }
     }
 
-    fn leaving(condition: ExprId) -> Flow {
+    fn leaving(condition: ExprId) -> StatementFlow {
         match condition {
-            Exprs::ZERO => Flow::Next,
-            Exprs::ONE => Flow::Break,
-            condition => Flow::BreakIf(condition),
+            Exprs::ZERO => StatementFlow::Next,
+            Exprs::ONE => StatementFlow::Break,
+            condition => StatementFlow::BreakIf(condition),
         }
     }
 }
@@ -62,7 +64,7 @@ pub struct AlgorithmBranch {
     /// Conditions, any of which fires it.
     pub conditions: Vec<ExprId>,
     /// New values of assigned variables, by the first part of their names.
-    pub values: Vec<(Symbol, Val)>,
+    pub values: Vec<(Symbol, ModelicaValue)>,
     /// Its `assert`s and `terminate`s.
     pub calls: Vec<AlgorithmCall>,
 }
@@ -75,7 +77,7 @@ pub struct AlgorithmCall {
     /// When it is reached.
     pub guard: ExprId,
     /// Its text.
-    pub message: Option<Val>,
+    pub message: Option<ModelicaValue>,
     /// `AssertionLevel.warning`
     pub warning: bool,
     /// Where it stands.
@@ -84,37 +86,37 @@ pub struct AlgorithmCall {
 
 /// What an `assert` says.
 #[derive(Clone, Debug)]
-pub struct Asserted {
+pub struct AssertArguments {
     /// What must hold.
     pub condition: ExprId,
     /// The text.
-    pub message: Option<Val>,
+    pub message: Option<ModelicaValue>,
     /// `AssertionLevel.warning`
     pub warning: bool,
 }
 
 impl<'a> Statements<'_, 'a, '_> {
     /// Carries out statements; `None` after a message, or when they cannot be written as expressions.
-    pub fn execute(&mut self, statements: &'a [Statement], view: View) -> Option<Flow> {
+    pub fn execute(&mut self, statements: &'a [Statement], view: LookupContext) -> Option<StatementFlow> {
         for (i, s) in statements.iter().enumerate() {
             if !self.instance.eval.work.step() {
                 self.instance.eval.not_inline = true;
                 return None;
             }
             match self.statement(s, view)? {
-                Flow::Next => {}
-                Flow::BreakIf(left) => {
+                StatementFlow::Next => {}
+                StatementFlow::BreakIf(left) => {
                     let rest = self.unless_left(left, |s| s.execute(&statements[i + 1..], view))?;
                     let Some(later) = rest.left() else {
                         self.instance.eval.not_inline = true;
                         return None;
                     };
-                    return Some(Flow::leaving(self.instance.exprs.or(left, later)));
+                    return Some(StatementFlow::leaving(self.instance.exprs.or(left, later)));
                 }
                 other => return Some(other),
             }
         }
-        Some(Flow::Next)
+        Some(StatementFlow::Next)
     }
 
     /// Carries out what is reached unless the loop around was left before.
@@ -130,16 +132,16 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// Gives locals the values they had where a condition holds.
-    fn merge_locals(&mut self, test: ExprId, before: &[(Symbol, Val)]) -> Option<()> {
+    fn merge_locals(&mut self, test: ExprId, before: &[(Symbol, ModelicaValue)]) -> Option<()> {
         for i in self.instance.eval.frame..self.instance.eval.locals.len() {
             let (a, b) = (&before[i].1, &self.instance.eval.locals[i].1);
             match a.zip(b, &mut |x, y, _| self.instance.exprs.if_(test, x, y)) {
                 Some(merged) => self.instance.eval.locals[i].1 = merged,
                 // which of the two it is is not known before the run, and a message can say no more
-                None if matches!((a, b), (Val::Text(_), Val::Text(_))) => {
+                None if matches!((a, b), (ModelicaValue::Text(_), ModelicaValue::Text(_))) => {
                     let words = MessagePart::Text("a text by a condition that is ".into());
-                    let parts = vec![words, MessagePart::Value(test, Type::Boolean)];
-                    self.instance.eval.locals[i].1 = Val::Text(Rc::new(parts));
+                    let parts = vec![words, MessagePart::Value(test, ScalarType::Boolean)];
+                    self.instance.eval.locals[i].1 = ModelicaValue::Text(Rc::new(parts));
                 }
                 None => {
                     self.instance.eval.not_inline = true;
@@ -150,36 +152,36 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(())
     }
 
-    fn statement(&mut self, s: &'a Statement, view: View) -> Option<Flow> {
+    fn statement(&mut self, s: &'a Statement, view: LookupContext) -> Option<StatementFlow> {
         match &s.kind {
             StatementKind::Assign(target, value) => {
                 let value = self.instance.evaluator().eval(value, view)?;
                 self.assign(target, value, view, s.span)?;
-                Some(Flow::Next)
+                Some(StatementFlow::Next)
             }
             StatementKind::AssignTuple(targets, call) => {
                 let value = self.instance.evaluator().eval_all(call, view)?;
                 self.assign_tuple(targets, value, view, s.span)?;
-                Some(Flow::Next)
+                Some(StatementFlow::Next)
             }
             StatementKind::Call(call) => self.statement_call(call, view),
             StatementKind::If { branches, otherwise } => self.if_statement(branches, otherwise, view),
             StatementKind::For { .. } | StatementKind::While(..) => self.loop_statement(s, view),
             StatementKind::When(branches) => self.when_statement(branches, view, s.span),
-            StatementKind::Break => Some(Flow::Break),
-            StatementKind::Return => Some(Flow::Return),
+            StatementKind::Break => Some(StatementFlow::Break),
+            StatementKind::Return => Some(StatementFlow::Return),
         }
     }
 
     pub(in crate::instance) fn assign_tuple(
         &mut self,
         targets: &'a [Option<Expr>],
-        value: Val,
-        view: View,
+        value: ModelicaValue,
+        view: LookupContext,
         span: Span,
     ) -> Option<()> {
-        let values: Vec<Val> = match &value {
-            Val::Tuple(values) => values.to_vec(),
+        let values: Vec<ModelicaValue> = match &value {
+            ModelicaValue::Tuple(values) => values.to_vec(),
             other => vec![other.clone()],
         };
         if targets.len() > values.len() {
@@ -195,7 +197,7 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// The local that a target names, or a message.
-    pub(in crate::instance) fn assigned_local(&mut self, target: &'a Expr) -> Option<(&'a Reference, usize)> {
+    pub(in crate::instance) fn assigned_local(&mut self, target: &'a Expr) -> Option<(&'a ComponentReference, usize)> {
         let ExprKind::Reference(r) = &target.kind else {
             return self.instance.fail(Code::TypeMismatch, "only a variable can be assigned to", target.span);
         };
@@ -208,7 +210,7 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// `target := value` for a local, or for a variable that the algorithm section was given as one.
-    fn assign(&mut self, target: &'a Expr, value: Val, view: View, span: Span) -> Option<()> {
+    fn assign(&mut self, target: &'a Expr, value: ModelicaValue, view: LookupContext, span: Span) -> Option<()> {
         let (r, i) = self.assigned_local(target)?;
         let name = r.parts[0].name;
         let value = value.first_output();
@@ -224,28 +226,32 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// Whether a variable of a function is declared with a size that its value brings, as `Real x[:]`.
-    pub(in crate::instance) fn is_flexible(&mut self, view: View, name: Symbol) -> bool {
+    pub(in crate::instance) fn is_flexible(&mut self, view: LookupContext, name: Symbol) -> bool {
         self.declaration(view, name).is_some_and(|c| c.subscripts.iter().any(|s| matches!(s, Subscript::All(_))))
     }
 
     /// The declaration of a variable of a function.
-    pub(in crate::instance) fn declaration(&mut self, view: View, name: Symbol) -> Option<&'a Component> {
-        let Some(Found::Component(scope, index)) = self.instance.names().lookup(view, name) else { return None };
+    pub(in crate::instance) fn declaration(
+        &mut self,
+        view: LookupContext,
+        name: Symbol,
+    ) -> Option<&'a ComponentDeclaration> {
+        let Some(LookupResult::Component(scope, index)) = self.instance.names().lookup(view, name) else { return None };
         match self.instance.scope(scope).template.elements[index as usize].kind {
-            Kind::Component(c) => Some(c),
-            Kind::Class(_) => None,
+            TemplateElementKind::Component(c) => Some(c),
+            TemplateElementKind::Class(_) => None,
         }
     }
 
     fn replaced(
         &mut self,
-        old: &Val,
-        r: &'a Reference,
+        old: &ModelicaValue,
+        r: &'a ComponentReference,
         part: usize,
-        value: Val,
-        view: View,
+        value: ModelicaValue,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let p: &'a ReferencePart = &r.parts[part];
         let last = part + 1 == r.parts.len();
         if p.subscripts.is_empty() {
@@ -254,12 +260,12 @@ impl<'a> Statements<'_, 'a, '_> {
             }
             return self.replaced_field(old, r, part + 1, value, view, span);
         }
-        let Val::Array { dims, elements } = old else {
+        let ModelicaValue::Array { dims, elements } = old else {
             return self.instance.fail(Code::BadIndex, &format!("`{}` is not an array", p.name.name), span);
         };
         let by = if part == 0 { self.instance.evaluator().counted_by(view, p.name.name) } else { Vec::new() };
         let picks = self.picks(dims, &by, p, view, span)?;
-        if picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
+        if picks.iter().any(|p| matches!(p, SubscriptValue::Symbolic(_))) {
             return self.replaced_somewhere(dims, elements, &picks, last, &value, span);
         }
         let (_, places) = places(dims, &picks);
@@ -278,20 +284,20 @@ impl<'a> Statements<'_, 'a, '_> {
             };
             elements[place] = self.replaced_field(&elements[place].clone(), r, part + 1, value, view, span)?;
         }
-        Some(Val::Array { dims: dims.clone(), elements: Rc::new(elements) })
+        Some(ModelicaValue::Array { dims: dims.clone(), elements: Rc::new(elements) })
     }
 
     fn replaced_field(
         &mut self,
-        old: &Val,
-        r: &'a Reference,
+        old: &ModelicaValue,
+        r: &'a ComponentReference,
         part: usize,
-        value: Val,
-        view: View,
+        value: ModelicaValue,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let name = r.parts[part].name;
-        let Val::Record(record) = old else {
+        let ModelicaValue::Record(record) = old else {
             return self.instance.fail(
                 Code::UnknownName,
                 &format!("{} has no field `{}`", old.describe(), name.name),
@@ -305,18 +311,18 @@ impl<'a> Statements<'_, 'a, '_> {
             return None;
         };
         fields[i].1 = self.replaced(&fields[i].1.clone(), r, part, value, view, span)?;
-        Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class: record.class })))
+        Some(ModelicaValue::Record(Rc::new(crate::instance::value::RecordValue { fields, class: record.class })))
     }
 
     /// What the subscripts of a target pick, all dimensions of the array included.
     fn picks(
         &mut self,
         dims: &[usize],
-        by: &[Type],
+        by: &[ScalarType],
         p: &'a ReferencePart,
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Vec<Pick>> {
+    ) -> Option<Vec<SubscriptValue>> {
         if p.subscripts.len() > dims.len() {
             let message = format!("{} indices for an array of size {}", p.subscripts.len(), size_text(dims));
             return self.instance.fail(Code::BadIndex, &message, span);
@@ -325,7 +331,7 @@ impl<'a> Statements<'_, 'a, '_> {
         for (i, (s, &n)) in p.subscripts.iter().zip(dims).enumerate() {
             picks.push(self.instance.evaluator().index(s, (n, by.get(i).copied()), view, span)?);
         }
-        picks.extend(dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
+        picks.extend(dims[picks.len()..].iter().map(|&n| SubscriptValue::Many((0..n).collect())));
         Some(picks)
     }
 
@@ -334,13 +340,13 @@ impl<'a> Statements<'_, 'a, '_> {
     fn replaced_somewhere(
         &mut self,
         dims: &[usize],
-        elements: &[Val],
-        picks: &[Pick],
+        elements: &[ModelicaValue],
+        picks: &[SubscriptValue],
         last: bool,
-        value: &Val,
+        value: &ModelicaValue,
         span: Span,
-    ) -> Option<Val> {
-        if self.instance.eval.depth > 0 || !last || picks.iter().any(|p| matches!(p, Pick::Many(_))) {
+    ) -> Option<ModelicaValue> {
+        if self.instance.eval.depth > 0 || !last || picks.iter().any(|p| matches!(p, SubscriptValue::Many(_))) {
             self.instance.eval.not_inline = true;
             return None;
         }
@@ -352,28 +358,28 @@ impl<'a> Statements<'_, 'a, '_> {
                 let place = rest % n;
                 rest /= n;
                 let here = match p {
-                    Pick::One(i) => self.instance.exprs.boolean(*i == place),
-                    Pick::Symbolic(e) => {
+                    SubscriptValue::One(i) => self.instance.exprs.boolean(*i == place),
+                    SubscriptValue::Symbolic(e) => {
                         let number = self.instance.exprs.num(place as f64 + 1.0);
-                        self.instance.exprs.rel(Rel::Eq, *e, number)
+                        self.instance.exprs.rel(RelationalOp::Eq, *e, number)
                     }
-                    Pick::Many(_) => Exprs::ZERO,
+                    SubscriptValue::Many(_) => Exprs::ZERO,
                 };
                 hit = self.instance.exprs.and(hit, here);
             }
             replaced.push(value.zip(old, &mut |new, old, _| self.instance.exprs.if_(hit, new, old))?);
         }
-        Some(Val::array(dims.to_vec(), replaced))
+        Some(ModelicaValue::array(dims.to_vec(), replaced))
     }
 
     /// A value for a variable that holds another now: sizes and types must fit.
-    fn matching(&mut self, old: &Val, value: Val, span: Span) -> Option<Val> {
+    fn matching(&mut self, old: &ModelicaValue, value: ModelicaValue, span: Span) -> Option<ModelicaValue> {
         if old.dims() != value.dims() {
             let message = format!("{} cannot take {}", old.describe(), value.describe());
             return self.instance.fail(Code::SizeMismatch, &message, span);
         }
         match (old.element_type(), value.element_type()) {
-            (Some(Type::Real), Some(Type::Integer)) => Some(value.with_type(Type::Real)),
+            (Some(ScalarType::Real), Some(ScalarType::Integer)) => Some(value.with_type(ScalarType::Real)),
             (Some(a), Some(b)) if a != b => self.instance.fail(
                 Code::TypeMismatch,
                 &format!("{} cannot take {}", old.describe(), value.describe()),
@@ -391,7 +397,7 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// `assert` in a function: known to hold, known to fail, or left to a procedure.
-    fn statement_call(&mut self, call: &'a Expr, view: View) -> Option<Flow> {
+    fn statement_call(&mut self, call: &'a Expr, view: LookupContext) -> Option<StatementFlow> {
         if let ExprKind::Call { function, args, .. } = &call.kind {
             match function.parts[0].name.name.as_str() {
                 "assert"
@@ -400,7 +406,7 @@ impl<'a> Statements<'_, 'a, '_> {
                 {
                     let c = self.instance.evaluator().eval(args.first()?, view)?;
                     return match c.as_number(&self.instance.exprs) {
-                        Some(x) if x != 0.0 => Some(Flow::Next),
+                        Some(x) if x != 0.0 => Some(StatementFlow::Next),
                         Some(_) if self.may_not_come_here() => {
                             (self.instance.eval.not_inline, self.instance.eval.may_fail) = (true, true);
                             None
@@ -442,27 +448,27 @@ impl<'a> Statements<'_, 'a, '_> {
             }
         }
         self.instance.evaluator().eval_all(call, view)?;
-        Some(Flow::Next)
+        Some(StatementFlow::Next)
     }
 
     /// Leaves what must hold, or a `terminate`, to the flat model.
     pub(in crate::instance) fn keep_call(
         &mut self,
         condition: Option<ExprId>,
-        message: Option<Val>,
+        message: Option<ModelicaValue>,
         warning: bool,
         span: Span,
-    ) -> Option<Flow> {
+    ) -> Option<StatementFlow> {
         let mut guard = Exprs::ONE;
         for g in self.instance.eval.guards.clone() {
             guard = self.instance.exprs.and(guard, g);
         }
         self.instance.eval.calls.push(AlgorithmCall { condition, guard, message, warning, span });
-        Some(Flow::Next)
+        Some(StatementFlow::Next)
     }
 
     /// The parts of an `assert`; its condition makes no events.
-    pub fn assertion(&mut self, call: &'a Expr, view: View) -> Option<Asserted> {
+    pub fn assertion(&mut self, call: &'a Expr, view: LookupContext) -> Option<AssertArguments> {
         let ExprKind::Call { args, named, .. } = &call.kind else { return None };
         let by_name = |n: &str| named.iter().find(|(i, _)| i.name == n).map(|(_, e)| e);
         let Some(condition) = args.first().or_else(|| by_name("condition")) else {
@@ -470,7 +476,7 @@ impl<'a> Statements<'_, 'a, '_> {
         };
         let value = self.instance.in_mode(|m| m.no_event = true, |s| s.evaluator().eval(condition, view));
         let value = value?;
-        let Some((condition, Type::Boolean)) = value.scalar() else {
+        let Some((condition, ScalarType::Boolean)) = value.scalar() else {
             return self.instance.evaluator().wrong_type("a Boolean", &value, condition.span);
         };
         let message = args.get(1).or_else(|| by_name("message")).and_then(|m| self.instance.evaluator().eval(m, view));
@@ -480,18 +486,18 @@ impl<'a> Statements<'_, 'a, '_> {
             }
             None => false,
         };
-        Some(Asserted { condition, message, warning })
+        Some(AssertArguments { condition, message, warning })
     }
 
     fn if_statement(
         &mut self,
         branches: &'a [(Expr, Vec<Statement>)],
         otherwise: &'a [Statement],
-        view: View,
-    ) -> Option<Flow> {
+        view: LookupContext,
+    ) -> Option<StatementFlow> {
         let Some(((condition, body), rest)) = branches.split_first() else { return self.execute(otherwise, view) };
         let c = self.instance.evaluator().eval(condition, view)?;
-        let Some((test, Type::Boolean)) = c.scalar() else {
+        let Some((test, ScalarType::Boolean)) = c.scalar() else {
             return self.instance.evaluator().wrong_type("a Boolean", &c, condition.span);
         };
         if let Some(known) = self.instance.exprs.as_num(test) {
@@ -503,13 +509,14 @@ impl<'a> Statements<'_, 'a, '_> {
         let after = std::mem::replace(&mut self.instance.eval.locals, before);
         let second = self.guarded(not, |s| s.if_statement(rest, otherwise, view))?;
         let ways = if self.instance.eval.depth == 0 { first.left().zip(second.left()) } else { None };
-        let Some((a, b)) = ways.or((first == Flow::Next && second == Flow::Next).then_some((Exprs::ZERO, Exprs::ZERO)))
+        let Some((a, b)) = ways
+            .or((first == StatementFlow::Next && second == StatementFlow::Next).then_some((Exprs::ZERO, Exprs::ZERO)))
         else {
             self.instance.eval.not_inline = true;
             return None;
         };
         self.merge_locals(test, &after)?;
-        Some(Flow::leaving(self.instance.exprs.if_(test, a, b)))
+        Some(StatementFlow::leaving(self.instance.exprs.if_(test, a, b)))
     }
 
     /// Runs statements that are reached under a condition only.
@@ -525,7 +532,7 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// A loop; in a section of a model one whose trajectory is not known becomes a procedure.
-    fn loop_statement(&mut self, s: &'a Statement, view: View) -> Option<Flow> {
+    fn loop_statement(&mut self, s: &'a Statement, view: LookupContext) -> Option<StatementFlow> {
         let before = self.instance.eval.locals.clone();
         let marks = (self.instance.diagnostics.len(), self.instance.eval.calls.len(), self.instance.eval.whens.len());
         let flow = match &s.kind {
@@ -541,11 +548,11 @@ impl<'a> Statements<'_, 'a, '_> {
         self.instance.eval.locals = before;
         self.instance.eval.calls.truncate(marks.1);
         self.instance.eval.whens.truncate(marks.2);
-        self.instance.procedures().loop_as_procedure(s, view).map(|()| Flow::Next)
+        self.instance.procedures().loop_as_procedure(s, view).map(|()| StatementFlow::Next)
     }
 
     /// Whether the bounds of a range change during the run: then it is no list of values.
-    fn varies(&mut self, range: Option<&'a Expr>, view: View) -> Option<bool> {
+    fn varies(&mut self, range: Option<&'a Expr>, view: LookupContext) -> Option<bool> {
         let Some(ExprKind::Range { from, step, to }) = range.map(|r| &r.kind) else { return Some(false) };
         for e in [Some(&**from), step.as_deref(), Some(&**to)].into_iter().flatten() {
             let value = self.instance.evaluator().eval(e, view)?;
@@ -558,38 +565,43 @@ impl<'a> Statements<'_, 'a, '_> {
 
     fn for_statement(
         &mut self,
-        iterators: &'a [bramah_syntax::ast::Iterator],
+        iterators: &'a [bramah_syntax::ast::ForIndex],
         body: &'a [Statement],
-        view: View,
-    ) -> Option<Flow> {
+        view: LookupContext,
+    ) -> Option<StatementFlow> {
         let Some((first, rest)) = iterators.split_first() else { return self.execute(body, view) };
         if self.instance.eval.depth == 0 && self.varies(first.range.as_ref(), view)? {
             self.instance.eval.not_inline = true;
             return None;
         }
         let mut left = Exprs::ZERO;
-        for value in self.instance.evaluator().iterate(first, Body::Statements(body), view)? {
+        for value in self.instance.evaluator().iterate(first, LoopBody::Statements(body), view)? {
             let flow = self.unless_left(left, |s| {
                 s.instance.eval.locals.push((first.name.name, value));
                 let flow = s.for_statement(rest, body, view);
                 s.instance.eval.locals.pop();
                 flow
             })?;
-            let Some(now) = flow.left() else { return Some(Flow::Return) };
+            let Some(now) = flow.left() else { return Some(StatementFlow::Return) };
             left = self.instance.exprs.or(left, now);
             if left == Exprs::ONE {
                 break;
             }
         }
-        Some(Flow::Next)
+        Some(StatementFlow::Next)
     }
 
-    fn while_statement(&mut self, condition: &'a Expr, body: &'a [Statement], view: View) -> Option<Flow> {
+    fn while_statement(
+        &mut self,
+        condition: &'a Expr,
+        body: &'a [Statement],
+        view: LookupContext,
+    ) -> Option<StatementFlow> {
         loop {
             let may_go_on = self.instance.eval.work.step();
             let c = self.instance.evaluator().eval(condition, view)?;
             match c.as_number(&self.instance.exprs) {
-                Some(0.0) => return Some(Flow::Next),
+                Some(0.0) => return Some(StatementFlow::Next),
                 Some(_) if may_go_on => {}
                 _ => {
                     self.instance.eval.not_inline = true;
@@ -597,10 +609,10 @@ impl<'a> Statements<'_, 'a, '_> {
                 }
             }
             match self.execute(body, view)? {
-                Flow::Next => {}
-                Flow::Break => return Some(Flow::Next),
-                Flow::Return => return Some(Flow::Return),
-                Flow::BreakIf(_) => {
+                StatementFlow::Next => {}
+                StatementFlow::Break => return Some(StatementFlow::Next),
+                StatementFlow::Return => return Some(StatementFlow::Return),
+                StatementFlow::BreakIf(_) => {
                     self.instance.eval.not_inline = true;
                     return None;
                 }
@@ -609,7 +621,12 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// `when` in an algorithm section of a model: what each branch assigns is kept for the flat model.
-    fn when_statement(&mut self, branches: &'a [(Expr, Vec<Statement>)], view: View, span: Span) -> Option<Flow> {
+    fn when_statement(
+        &mut self,
+        branches: &'a [(Expr, Vec<Statement>)],
+        view: LookupContext,
+        span: Span,
+    ) -> Option<StatementFlow> {
         if self.instance.eval.depth > 0 {
             return self.instance.fail(Code::Unsupported, "`when` cannot stand in a function", span);
         }
@@ -633,16 +650,16 @@ impl<'a> Statements<'_, 'a, '_> {
         }
         self.instance.eval.calls = outside;
         self.instance.eval.whens.push(collected);
-        Some(Flow::Next)
+        Some(StatementFlow::Next)
     }
 
     /// The conditions of a `when`: one, or a vector of which any fires.
-    pub fn when_conditions(&mut self, condition: &'a Expr, view: View) -> Option<Vec<ExprId>> {
+    pub fn when_conditions(&mut self, condition: &'a Expr, view: LookupContext) -> Option<Vec<ExprId>> {
         let value = self.instance.evaluator().eval(condition, view)?;
         let mut conditions = Vec::new();
         for v in value.elements() {
             match v.scalar() {
-                Some((e, Type::Boolean)) => conditions.push(e),
+                Some((e, ScalarType::Boolean)) => conditions.push(e),
                 _ => return self.instance.evaluator().wrong_type("a Boolean", v, condition.span),
             }
         }
@@ -655,8 +672,8 @@ impl<'a> Statements<'_, 'a, '_> {
 pub fn assigned<'a>(
     statements: &'a [Statement],
     inside: bool,
-    always: &mut Vec<&'a Reference>,
-    in_when: &mut Vec<&'a Reference>,
+    always: &mut Vec<&'a ComponentReference>,
+    in_when: &mut Vec<&'a ComponentReference>,
 ) {
     let mut note = |e: &'a Expr| {
         if let ExprKind::Reference(r) = &e.kind {
@@ -684,7 +701,7 @@ pub fn assigned<'a>(
 }
 
 /// Whether two values hold the same expressions.
-pub(in crate::instance) fn same(a: &Val, b: &Val) -> bool {
+pub(in crate::instance) fn same(a: &ModelicaValue, b: &ModelicaValue) -> bool {
     let (mut x, mut y) = (Vec::new(), Vec::new());
     a.scalars(&mut x);
     b.scalars(&mut y);

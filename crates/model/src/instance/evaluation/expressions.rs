@@ -1,10 +1,10 @@
 //! Expressions of the language to values: symbolic in the flat model, by number where a value must be known.
 
-use crate::instance::evaluation::state::Mode;
-use crate::instance::modifiers::{Access, Binding};
-use crate::instance::value::{Val, size_text, stack};
-use crate::instance::{Evaluator, View};
-use bramah_expr::types::{Type, Variability};
+use crate::instance::evaluation::state::EvaluationMode;
+use crate::instance::modifiers::{AccessStep, Binding};
+use crate::instance::value::{ModelicaValue, size_text, stack};
+use crate::instance::{Evaluator, LookupContext};
+use bramah_expr::types::{ScalarType, Variability};
 use bramah_expr::{ExprId, Exprs};
 use bramah_syntax::ast::{Expr, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
@@ -12,9 +12,9 @@ use std::rc::Rc;
 
 impl<'a> Evaluator<'_, 'a, '_> {
     /// Evaluates an expression; `None` after a message. A call with several outputs counts as its first (MLS 12.4.3).
-    pub fn eval(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+    pub fn eval(&mut self, e: &'a Expr, view: LookupContext) -> Option<ModelicaValue> {
         match self.eval_all(e, view)? {
-            Val::Tuple(values) => match values.first() {
+            ModelicaValue::Tuple(values) => match values.first() {
                 Some(first) => Some(first.clone()),
                 None => self.no_output(e),
             },
@@ -23,7 +23,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// A call that gives nothing cannot be a value.
-    fn no_output(&mut self, e: &'a Expr) -> Option<Val> {
+    fn no_output(&mut self, e: &'a Expr) -> Option<ModelicaValue> {
         let name = match &e.kind {
             ExprKind::Call { function, .. } => {
                 function.parts.iter().map(|p| p.name.name.as_str()).collect::<Vec<_>>().join(".")
@@ -34,12 +34,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// Evaluates an expression with all outputs of a call.
-    pub fn eval_all(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+    pub fn eval_all(&mut self, e: &'a Expr, view: LookupContext) -> Option<ModelicaValue> {
         match &e.kind {
             ExprKind::Integer(i) => Some(self.integer(*i as f64)),
-            ExprKind::Real(x) => Some(Val::Scalar(self.instance.exprs.num(*x), Type::Real)),
-            ExprKind::Boolean(b) => Some(Val::Scalar(self.instance.exprs.boolean(*b), Type::Boolean)),
-            ExprKind::String(s) => Some(Val::text(&**s)),
+            ExprKind::Real(x) => Some(ModelicaValue::Scalar(self.instance.exprs.num(*x), ScalarType::Real)),
+            ExprKind::Boolean(b) => Some(ModelicaValue::Scalar(self.instance.exprs.boolean(*b), ScalarType::Boolean)),
+            ExprKind::String(s) => Some(ModelicaValue::text(&**s)),
             ExprKind::Reference(r) => self.reference(r, view),
             ExprKind::Unary(op, a) => {
                 let value = self.eval(a, view)?;
@@ -56,14 +56,16 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 self.comprehension(function.as_ref(), body, iterators, view, e.span)
             }
             ExprKind::Array(items) => {
-                let values: Option<Vec<Val>> = items.iter().map(|i| self.eval(i, view)).collect();
+                let values: Option<Vec<ModelicaValue>> = items.iter().map(|i| self.eval(i, view)).collect();
                 self.stacked(values?, e.span)
             }
             ExprKind::Matrix(rows) => self.matrix(rows, view, e.span),
             ExprKind::Tuple(items) => {
-                let values: Option<Vec<Val>> =
-                    items.iter().map(|i| i.as_ref().map_or(Some(Val::text("")), |i| self.eval(i, view))).collect();
-                Some(Val::Tuple(Rc::new(values?)))
+                let values: Option<Vec<ModelicaValue>> = items
+                    .iter()
+                    .map(|i| i.as_ref().map_or(Some(ModelicaValue::text("")), |i| self.eval(i, view)))
+                    .collect();
+                Some(ModelicaValue::Tuple(Rc::new(values?)))
             }
             ExprKind::Index(inner, subscripts) => {
                 let value = self.eval(inner, view)?;
@@ -71,8 +73,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
             }
             ExprKind::End => match self.instance.eval.ends.last() {
                 // of an enumeration its last literal, of truth values `true` (MLS 10.5)
-                Some(&(_, Type::Boolean)) => Some(Val::Scalar(Exprs::ONE, Type::Boolean)),
-                Some(&(n, by)) => Some(Val::Scalar(self.instance.exprs.num(n as f64), by)),
+                Some(&(_, ScalarType::Boolean)) => Some(ModelicaValue::Scalar(Exprs::ONE, ScalarType::Boolean)),
+                Some(&(n, by)) => Some(ModelicaValue::Scalar(self.instance.exprs.num(n as f64), by)),
                 None => self.instance.fail(Code::BadIndex, "`end` is only known inside brackets `[...]`", e.span),
             },
             ExprKind::PartialApplication { function, named } => {
@@ -83,33 +85,33 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// Evaluates with parameters by value.
-    pub fn constant(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+    pub fn constant(&mut self, e: &'a Expr, view: LookupContext) -> Option<ModelicaValue> {
         self.instance.in_mode(|m| m.constant = true, |s| s.evaluator().eval(e, view))
     }
 
     /// A truth value that must be known.
-    pub fn constant_boolean(&mut self, e: &'a Expr, view: View) -> Option<bool> {
+    pub fn constant_boolean(&mut self, e: &'a Expr, view: LookupContext) -> Option<bool> {
         let value = self.constant(e, view)?;
         match (value.scalar(), value.as_number(&self.instance.exprs)) {
-            (Some((_, Type::Boolean)), Some(x)) => Some(x != 0.0),
-            (Some((_, Type::Boolean)), None) => {
+            (Some((_, ScalarType::Boolean)), Some(x)) => Some(x != 0.0),
+            (Some((_, ScalarType::Boolean)), None) => {
                 self.instance.fail(Code::NotConstant, "this condition must be known before the run", e.span)
             }
             _ => self.wrong_type("a Boolean", &value, e.span),
         }
     }
 
-    pub(in crate::instance) fn integer(&mut self, x: f64) -> Val {
-        Val::Scalar(self.instance.exprs.num(x), Type::Integer)
+    pub(in crate::instance) fn integer(&mut self, x: f64) -> ModelicaValue {
+        ModelicaValue::Scalar(self.instance.exprs.num(x), ScalarType::Integer)
     }
 
-    pub(in crate::instance) fn wrong_type<T>(&mut self, wanted: &str, got: &Val, span: Span) -> Option<T> {
+    pub(in crate::instance) fn wrong_type<T>(&mut self, wanted: &str, got: &ModelicaValue, span: Span) -> Option<T> {
         let message = format!("{wanted} is needed here, and this is {}", got.describe());
         self.instance.fail(Code::TypeMismatch, &message, span)
     }
 
     /// The value of a binding, or the part of it that is meant for one element.
-    pub fn binding_value(&mut self, b: &Binding<'a>, constant: bool) -> Option<Val> {
+    pub fn binding_value(&mut self, b: &Binding<'a>, constant: bool) -> Option<ModelicaValue> {
         if b.access.is_empty() {
             return self.isolated(b, constant);
         }
@@ -125,35 +127,37 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.access(whole, &b.access, b.expr.span)
     }
 
-    fn isolated(&mut self, b: &Binding<'a>, constant: bool) -> Option<Val> {
+    fn isolated(&mut self, b: &Binding<'a>, constant: bool) -> Option<ModelicaValue> {
         let frame = std::mem::replace(&mut self.instance.eval.frame, self.instance.eval.locals.len());
         let ends = std::mem::take(&mut self.instance.eval.ends);
-        let change = |m: &mut Mode| (m.constant, m.no_event) = (constant, false);
+        let change = |m: &mut EvaluationMode| (m.constant, m.no_event) = (constant, false);
         let value = self.instance.in_mode(change, |s| s.evaluator().eval(b.expr, b.view));
         self.instance.eval.frame = frame;
         self.instance.eval.ends = ends;
         value
     }
 
-    fn access(&mut self, mut value: Val, access: &[Access], span: Span) -> Option<Val> {
+    fn access(&mut self, mut value: ModelicaValue, access: &[AccessStep], span: Span) -> Option<ModelicaValue> {
         for step in access {
             let next = match step {
-                Access::Index(at) if value.dims().first().is_some_and(|&n| n == at.of as usize) => {
+                AccessStep::Index(at) if value.dims().first().is_some_and(|&n| n == at.of as usize) => {
                     value.slice(at.place as usize)
                 }
-                Access::Index(_) => None,
-                Access::Field(name) => match &value {
-                    Val::Record(record) => record.fields.iter().find(|(n, _)| n == name).map(|(_, v)| v.clone()),
+                AccessStep::Index(_) => None,
+                AccessStep::Field(name) => match &value {
+                    ModelicaValue::Record(record) => {
+                        record.fields.iter().find(|(n, _)| n == name).map(|(_, v)| v.clone())
+                    }
                     _ => None,
                 },
             };
             value = match (next, step) {
                 (Some(v), _) => v,
-                (None, Access::Index(at)) => {
+                (None, AccessStep::Index(at)) => {
                     self.wrong_count(at.of, &value, span);
                     return None;
                 }
-                (None, Access::Field(name)) => {
+                (None, AccessStep::Field(name)) => {
                     let message = format!("this has no field `{name}`: it is {}", value.describe());
                     return self.instance.fail(Code::TypeMismatch, &message, span);
                 }
@@ -163,7 +167,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// A value for an array of another size, reported once for all its elements.
-    fn wrong_count(&mut self, wanted: u32, value: &Val, span: Span) {
+    fn wrong_count(&mut self, wanted: u32, value: &ModelicaValue, span: Span) {
         let message = format!("an array of {wanted} elements is needed here, and this is {}", value.describe());
         if self
             .instance
@@ -180,8 +184,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
         );
     }
 
-    pub(in crate::instance) fn stacked(&mut self, values: Vec<Val>, span: Span) -> Option<Val> {
-        let shapes: Vec<String> = values.iter().map(Val::describe).collect();
+    pub(in crate::instance) fn stacked(&mut self, values: Vec<ModelicaValue>, span: Span) -> Option<ModelicaValue> {
+        let shapes: Vec<String> = values.iter().map(ModelicaValue::describe).collect();
         match stack(values) {
             Some(v) => Some(v),
             None => {
@@ -191,10 +195,10 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
-    fn matrix(&mut self, rows: &'a [Vec<Expr>], view: View, span: Span) -> Option<Val> {
+    fn matrix(&mut self, rows: &'a [Vec<Expr>], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let mut lines = Vec::new();
         for row in rows {
-            let values: Option<Vec<Val>> = row.iter().map(|e| self.eval(e, view)).collect();
+            let values: Option<Vec<ModelicaValue>> = row.iter().map(|e| self.eval(e, view)).collect();
             let values = values?.into_iter().map(as_matrix).collect();
             lines.push(self.concatenate(2, values, span)?);
         }
@@ -202,8 +206,13 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// `cat(k, ...)`
-    pub(in crate::instance) fn concatenate(&mut self, along: usize, values: Vec<Val>, span: Span) -> Option<Val> {
-        let Some(first) = values.first() else { return Some(Val::array(vec![0], Vec::new())) };
+    pub(in crate::instance) fn concatenate(
+        &mut self,
+        along: usize,
+        values: Vec<ModelicaValue>,
+        span: Span,
+    ) -> Option<ModelicaValue> {
+        let Some(first) = values.first() else { return Some(ModelicaValue::array(vec![0], Vec::new())) };
         let mut dims = first.dims().to_vec();
         if along == 0 || along > dims.len() {
             return self.instance.fail(
@@ -229,19 +238,19 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 elements.extend_from_slice(&v.elements()[o * chunk..(o + 1) * chunk]);
             }
         }
-        Some(Val::array(dims, elements))
+        Some(ModelicaValue::array(dims, elements))
     }
 
     fn if_expression(
         &mut self,
         branches: &'a [(Expr, Expr)],
         otherwise: &'a Expr,
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let Some(((condition, value), rest)) = branches.split_first() else { return self.eval(otherwise, view) };
         let c = self.eval(condition, view)?;
-        let Some((test, Type::Boolean)) = c.scalar() else {
+        let Some((test, ScalarType::Boolean)) = c.scalar() else {
             return self.wrong_type("a Boolean", &c, condition.span);
         };
         if let Some(known) = self.instance.exprs.as_num(test) {
@@ -295,7 +304,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             };
         }
         let (a, b) = (a?, b?);
-        if let (Val::Text(_), Val::Text(_)) = (&a, &b) {
+        if let (ModelicaValue::Text(_), ModelicaValue::Text(_)) = (&a, &b) {
             return self.instance.fail(Code::NotConstant, "this text must be known before the run", span);
         }
         self.instance.operators().sizes_differ(&a, &b, span)
@@ -309,8 +318,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// Whether one of two values has derivatives that the other one has not.
-    fn derivatives_differ(&self, a: &Val, b: &Val) -> bool {
-        let of = |v: &Val| {
+    fn derivatives_differ(&self, a: &ModelicaValue, b: &ModelicaValue) -> bool {
+        let of = |v: &ModelicaValue| {
             let mut scalars = Vec::new();
             v.scalars(&mut scalars);
             let mut found: Vec<_> = scalars.into_iter().flat_map(|e| self.instance.exprs.derivatives(e)).collect();
@@ -323,11 +332,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
 }
 
 /// A scalar or vector as a matrix, for `[a, b; c, d]`: vectors are columns.
-fn as_matrix(v: Val) -> Val {
+fn as_matrix(v: ModelicaValue) -> ModelicaValue {
     let mut dims = v.dims().to_vec();
     while dims.len() < 2 {
         dims.push(1);
     }
     let elements = v.elements().to_vec();
-    Val::array(dims, elements)
+    ModelicaValue::array(dims, elements)
 }

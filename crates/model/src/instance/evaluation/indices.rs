@@ -1,10 +1,10 @@
 //! Subscripts: elements and parts of arrays, by numbers that are known or change during the run.
 
 use crate::instance::errors::short;
-use crate::instance::value::Val;
-use crate::instance::{Evaluator, View};
-use bramah_expr::types::{MessagePart, Type, Variability};
-use bramah_expr::{ExprId, Exprs, Rel};
+use crate::instance::value::ModelicaValue;
+use crate::instance::{Evaluator, LookupContext};
+use bramah_expr::types::{MessagePart, ScalarType, Variability};
+use bramah_expr::{ExprId, Exprs, RelationalOp};
 use bramah_syntax::ast::Subscript;
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
@@ -13,27 +13,27 @@ impl<'a> Evaluator<'_, 'a, '_> {
     /// Applies subscripts to a value.
     pub(in crate::instance) fn subscript(
         &mut self,
-        value: Val,
+        value: ModelicaValue,
         subscripts: &'a [Subscript],
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         self.subscript_by(value, subscripts, &[], view, span)
     }
 
     /// Applies subscripts to the value of an array of which is known what counts along its dimensions.
     pub(in crate::instance) fn subscript_by(
         &mut self,
-        value: Val,
+        value: ModelicaValue,
         subscripts: &'a [Subscript],
-        by: &[Type],
-        view: View,
+        by: &[ScalarType],
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         if subscripts.is_empty() {
             return Some(value);
         }
-        let Val::Array { dims, elements } = &value else {
+        let ModelicaValue::Array { dims, elements } = &value else {
             return self.instance.fail(Code::BadIndex, &format!("{} cannot be indexed", value.describe()), span);
         };
         if subscripts.len() > dims.len() {
@@ -44,8 +44,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
         for (i, s) in subscripts.iter().enumerate() {
             picks.push(self.index(s, (dims[i], by.get(i).copied()), view, span)?);
         }
-        picks.extend(dims[subscripts.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
-        if picks.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
+        picks.extend(dims[subscripts.len()..].iter().map(|&n| SubscriptValue::Many((0..n).collect())));
+        if picks.iter().any(|p| matches!(p, SubscriptValue::Symbolic(_))) {
             return self.dynamic(dims, elements, &picks, span);
         }
         Some(pick(dims, elements, &picks))
@@ -56,51 +56,53 @@ impl<'a> Evaluator<'_, 'a, '_> {
     pub(in crate::instance) fn index(
         &mut self,
         s: &'a Subscript,
-        (size, by): (usize, Option<Type>),
-        view: View,
+        (size, by): (usize, Option<ScalarType>),
+        view: LookupContext,
         span: Span,
-    ) -> Option<Pick> {
-        let Subscript::Expr(e) = s else { return Some(Pick::Many((0..size).collect())) };
+    ) -> Option<SubscriptValue> {
+        let Subscript::Expr(e) = s else { return Some(SubscriptValue::Many((0..size).collect())) };
         if let Some(all) = self.enumeration_range(e, view) {
-            self.check_index(all.first().and_then(Val::element_type), by, e.span)?;
-            return Some(Pick::Many((0..all.len()).collect()));
+            self.check_index(all.first().and_then(ModelicaValue::element_type), by, e.span)?;
+            return Some(SubscriptValue::Many((0..all.len()).collect()));
         }
-        self.instance.eval.ends.push((size, by.unwrap_or(Type::Integer)));
+        self.instance.eval.ends.push((size, by.unwrap_or(ScalarType::Integer)));
         let value = self.eval(e, view);
         self.instance.eval.ends.pop();
         let value = value?;
         self.check_index(value.element_type(), by, e.span)?;
         match &value {
-            Val::Scalar(id, Type::Boolean) if size == 2 => Some(self.boolean_index(*id)),
-            Val::Scalar(id, ty @ (Type::Integer | Type::Enumeration(_))) => match self.instance.exprs.as_num(*id) {
-                Some(x) => Some(Pick::One(self.in_range(x, size, e.span)?)),
-                None => {
-                    let outside = self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure;
-                    if outside
-                        && self.instance.variability(*id) <= Variability::Parameter
-                        && !self.instance.found_at_start(*id)
-                    {
-                        let known = self.constant(e, view)?.as_number(&self.instance.exprs);
-                        if let Some(x) = known {
-                            return Some(Pick::One(self.in_range(x, size, e.span)?));
+            ModelicaValue::Scalar(id, ScalarType::Boolean) if size == 2 => Some(self.boolean_index(*id)),
+            ModelicaValue::Scalar(id, ty @ (ScalarType::Integer | ScalarType::Enumeration(_))) => {
+                match self.instance.exprs.as_num(*id) {
+                    Some(x) => Some(SubscriptValue::One(self.in_range(x, size, e.span)?)),
+                    None => {
+                        let outside = self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure;
+                        if outside
+                            && self.instance.variability(*id) <= Variability::Parameter
+                            && !self.instance.found_at_start(*id)
+                        {
+                            let known = self.constant(e, view)?.as_number(&self.instance.exprs);
+                            if let Some(x) = known {
+                                return Some(SubscriptValue::One(self.in_range(x, size, e.span)?));
+                            }
                         }
+                        if *ty == ScalarType::Integer && !self.instance.eval.mode.procedure {
+                            self.watch_index(*id, size, e.span);
+                        }
+                        Some(SubscriptValue::Symbolic(*id))
                     }
-                    if *ty == Type::Integer && !self.instance.eval.mode.procedure {
-                        self.watch_index(*id, size, e.span);
-                    }
-                    Some(Pick::Symbolic(*id))
                 }
-            },
-            Val::Array { elements, .. } => {
+            }
+            ModelicaValue::Array { elements, .. } => {
                 let mut places = Vec::new();
                 for v in elements.iter() {
                     let Some(x) = v.as_number(&self.instance.exprs) else {
                         return self.instance.fail(Code::NotConstant, "an index must be known before the run", span);
                     };
-                    let first = if v.element_type() == Some(Type::Boolean) { 0.0 } else { 1.0 };
+                    let first = if v.element_type() == Some(ScalarType::Boolean) { 0.0 } else { 1.0 };
                     places.push(self.in_range(x - first + 1.0, size, e.span)?);
                 }
-                Some(Pick::Many(places))
+                Some(SubscriptValue::Many(places))
             }
             _ => self.wrong_type("an Integer", &value, e.span),
         }
@@ -108,21 +110,26 @@ impl<'a> Evaluator<'_, 'a, '_> {
 
     /// An array is indexed by what its declaration counts by (MLS 10.5): literals of an enumeration and numbers do not
     /// stand for each other.
-    pub(in crate::instance) fn check_index(&mut self, given: Option<Type>, by: Option<Type>, span: Span) -> Option<()> {
+    pub(in crate::instance) fn check_index(
+        &mut self,
+        given: Option<ScalarType>,
+        by: Option<ScalarType>,
+        span: Span,
+    ) -> Option<()> {
         let (Some(given), Some(by)) = (given, by) else { return Some(()) };
         if given == by {
             return Some(());
         }
         let (wanted, words) = (self.instance.parameters().type_words(by), self.instance.parameters().type_words(given));
         let help = match (by, given) {
-            (Type::Enumeration(e), _) => {
+            (ScalarType::Enumeration(e), _) => {
                 let e = &self.instance.enumerations[e as usize];
                 let name = short(&e.name);
                 let first = e.literals.first().map_or("", |l| l.as_str());
                 format!("give a literal, as in `[{name}.{first}]`, or loop with `for i in {name} loop`")
             }
-            (Type::Boolean, _) => "give `false` or `true`, or a relation".into(),
-            (_, Type::Enumeration(_)) => "`Integer(e)` is the number of an enumeration value".into(),
+            (ScalarType::Boolean, _) => "give `false` or `true`, or a relation".into(),
+            (_, ScalarType::Enumeration(_)) => "`Integer(e)` is the number of an enumeration value".into(),
             _ => "give a whole number; `integer(x)` is the one below `x`".into(),
         };
         let message = format!("this dimension counts by {wanted}, and the index is {words}");
@@ -131,12 +138,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// `false` and `true` as indices of an array declared with `[Boolean]`.
-    pub(in crate::instance) fn boolean_index(&mut self, e: ExprId) -> Pick {
+    pub(in crate::instance) fn boolean_index(&mut self, e: ExprId) -> SubscriptValue {
         match self.instance.exprs.as_num(e) {
-            Some(x) => Pick::One(usize::from(x != 0.0)),
+            Some(x) => SubscriptValue::One(usize::from(x != 0.0)),
             None => {
                 let two = self.instance.exprs.num(2.0);
-                Pick::Symbolic(self.instance.exprs.if_(e, two, Exprs::ONE))
+                SubscriptValue::Symbolic(self.instance.exprs.if_(e, two, Exprs::ONE))
             }
         }
     }
@@ -144,15 +151,17 @@ impl<'a> Evaluator<'_, 'a, '_> {
     /// An index that changes must stay inside the array during the run, wherever it is used.
     pub(in crate::instance) fn watch_index(&mut self, index: ExprId, size: usize, span: Span) {
         let last = self.instance.exprs.num(size as f64);
-        let (low, high) =
-            (self.instance.exprs.rel(Rel::Ge, index, Exprs::ONE), self.instance.exprs.rel(Rel::Le, index, last));
+        let (low, high) = (
+            self.instance.exprs.rel(RelationalOp::Ge, index, Exprs::ONE),
+            self.instance.exprs.rel(RelationalOp::Le, index, last),
+        );
         let condition = self.instance.exprs.and(low, high);
         let parts = vec![
             MessagePart::Text("the index ".into()),
-            MessagePart::Value(index, Type::Integer),
+            MessagePart::Value(index, ScalarType::Integer),
             MessagePart::Text(format!(" lies outside 1..{size}")),
         ];
-        self.instance.statements().keep_call(Some(condition), Some(Val::Text(Rc::new(parts))), false, span);
+        self.instance.statements().keep_call(Some(condition), Some(ModelicaValue::Text(Rc::new(parts))), false, span);
     }
 
     pub(in crate::instance) fn in_range(&mut self, x: f64, size: usize, span: Span) -> Option<usize> {
@@ -166,10 +175,10 @@ impl<'a> Evaluator<'_, 'a, '_> {
     pub(in crate::instance) fn dynamic(
         &mut self,
         dims: &[usize],
-        elements: &Rc<Vec<Val>>,
-        picks: &[Pick],
+        elements: &Rc<Vec<ModelicaValue>>,
+        picks: &[SubscriptValue],
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         if self.instance.eval.frame > 0 && !self.instance.eval.mode.procedure && elements.len() > 12 {
             self.instance.eval.not_inline = true;
             return None;
@@ -179,13 +188,13 @@ impl<'a> Evaluator<'_, 'a, '_> {
         {
             return Some(v);
         }
-        let at = picks.iter().position(|p| matches!(p, Pick::Symbolic(_)))?;
-        let Pick::Symbolic(index) = picks[at] else { return None };
-        let mut result: Option<Val> = None;
+        let at = picks.iter().position(|p| matches!(p, SubscriptValue::Symbolic(_)))?;
+        let SubscriptValue::Symbolic(index) = picks[at] else { return None };
+        let mut result: Option<ModelicaValue> = None;
         for k in (0..dims[at]).rev() {
             let mut fixed = picks.to_vec();
-            fixed[at] = Pick::One(k);
-            let value = if fixed.iter().any(|p| matches!(p, Pick::Symbolic(_))) {
+            fixed[at] = SubscriptValue::One(k);
+            let value = if fixed.iter().any(|p| matches!(p, SubscriptValue::Symbolic(_))) {
                 self.dynamic(dims, elements, &fixed, span)?
             } else {
                 pick(dims, elements, &fixed)
@@ -194,7 +203,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 None => value,
                 Some(rest) => {
                     let number = self.instance.exprs.num(k as f64 + 1.0);
-                    let plain = self.instance.exprs.rel(Rel::Le, index, number);
+                    let plain = self.instance.exprs.rel(RelationalOp::Le, index, number);
                     value.zip(&rest, &mut |x, y, _| self.instance.exprs.if_(plain, x, y))?
                 }
             });
@@ -205,7 +214,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
 
 /// A subscript after evaluation.
 #[derive(Clone, Debug)]
-pub enum Pick {
+pub enum SubscriptValue {
     /// One place, from 0.
     One(usize),
     /// Several places; the dimension stays.
@@ -215,26 +224,26 @@ pub enum Pick {
 }
 
 /// Picks elements by known places.
-pub(in crate::instance) fn pick(dims: &[usize], elements: &[Val], picks: &[Pick]) -> Val {
+pub(in crate::instance) fn pick(dims: &[usize], elements: &[ModelicaValue], picks: &[SubscriptValue]) -> ModelicaValue {
     let (kept, places) = places(dims, picks);
     if kept.is_empty() {
         return elements[places[0]].clone();
     }
-    Val::array(kept, places.into_iter().map(|i| elements[i].clone()).collect())
+    ModelicaValue::array(kept, places.into_iter().map(|i| elements[i].clone()).collect())
 }
 
 /// The row-major places of what is picked, and the sizes that stay.
-pub(in crate::instance) fn places(dims: &[usize], picks: &[Pick]) -> (Vec<usize>, Vec<usize>) {
+pub(in crate::instance) fn places(dims: &[usize], picks: &[SubscriptValue]) -> (Vec<usize>, Vec<usize>) {
     let mut places = vec![0usize];
     let mut kept = Vec::new();
     for (p, &d) in picks.iter().zip(dims) {
         let choices: &[usize] = match p {
-            Pick::One(i) => std::slice::from_ref(i),
-            Pick::Many(many) => {
+            SubscriptValue::One(i) => std::slice::from_ref(i),
+            SubscriptValue::Many(many) => {
                 kept.push(many.len());
                 many
             }
-            Pick::Symbolic(_) => &[],
+            SubscriptValue::Symbolic(_) => &[],
         };
         places = places.iter().flat_map(|&base| choices.iter().map(move |&c| base * d + c)).collect();
     }

@@ -1,39 +1,50 @@
 //! Operators on values: numbers, arrays and matrices, texts, relations.
 
 use crate::instance::Operators;
-use crate::instance::value::{Val, wider};
-use bramah_expr::types::{MessagePart, Type, Variability};
-use bramah_expr::{Binary, Exprs, Rel};
+use crate::instance::value::{ModelicaValue, wider};
+use bramah_expr::types::{MessagePart, ScalarType, Variability};
+use bramah_expr::{BinaryFunction, Exprs, RelationalOp};
 use bramah_syntax::ast::{BinaryOp, UnaryOp};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
 impl<'a> Operators<'_, 'a, '_> {
-    pub(in crate::instance) fn unary(&mut self, op: UnaryOp, value: Val, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn unary(
+        &mut self,
+        op: UnaryOp,
+        value: ModelicaValue,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         if let Some(result) = self.overloaded_unary(op, &value, span) {
             return result;
         }
         let ty = value.element_type();
         match op {
             UnaryOp::Not => match ty {
-                Some(Type::Boolean) => Some(value.map(&mut |e, _| self.instance.exprs.not(e))),
+                Some(ScalarType::Boolean) => Some(value.map(&mut |e, _| self.instance.exprs.not(e))),
                 _ => self.instance.evaluator().wrong_type("a Boolean", &value, span),
             },
             UnaryOp::Plus | UnaryOp::ElementPlus => Some(value),
             UnaryOp::Minus | UnaryOp::ElementMinus => match ty {
-                Some(Type::Real | Type::Integer) => Some(value.map(&mut |e, _| self.instance.exprs.neg(e))),
+                Some(ScalarType::Real | ScalarType::Integer) => Some(value.map(&mut |e, _| self.instance.exprs.neg(e))),
                 None if value.elements().is_empty() => Some(value),
                 _ => self.instance.evaluator().wrong_type("a number", &value, span),
             },
         }
     }
 
-    pub(in crate::instance) fn binary(&mut self, op: BinaryOp, a: Val, b: Val, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn binary(
+        &mut self,
+        op: BinaryOp,
+        a: ModelicaValue,
+        b: ModelicaValue,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         use BinaryOp as B;
         if let Some(result) = self.overloaded_binary(op, &a, &b, span) {
             return result;
         }
-        if let (Val::Text(x), Val::Text(y)) = (&a, &b) {
+        if let (ModelicaValue::Text(x), ModelicaValue::Text(y)) = (&a, &b) {
             return self.texts(op, x, y, span);
         }
         match op {
@@ -50,10 +61,10 @@ impl<'a> Operators<'_, 'a, '_> {
             B::Lt | B::Le | B::Gt | B::Ge | B::Eq | B::Ne => self.relation(op, &a, &b, span),
             B::And | B::Or => {
                 let (ta, tb) = (a.element_type(), b.element_type());
-                if ta != Some(Type::Boolean) {
+                if ta != Some(ScalarType::Boolean) {
                     return self.instance.evaluator().wrong_type("a Boolean", &a, span);
                 }
-                if tb != Some(Type::Boolean) {
+                if tb != Some(ScalarType::Boolean) {
                     return self.instance.evaluator().wrong_type("a Boolean", &b, span);
                 }
                 let and = op == B::And;
@@ -71,11 +82,11 @@ impl<'a> Operators<'_, 'a, '_> {
         x: &Rc<Vec<MessagePart>>,
         y: &Rc<Vec<MessagePart>>,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         if op == BinaryOp::Add {
-            return Some(Val::Text(Rc::new(x.iter().chain(y.iter()).cloned().collect())));
+            return Some(ModelicaValue::Text(Rc::new(x.iter().chain(y.iter()).cloned().collect())));
         }
-        let words = |p: &Rc<Vec<MessagePart>>| Val::Text(p.clone()).as_text(&self.instance.exprs);
+        let words = |p: &Rc<Vec<MessagePart>>| ModelicaValue::Text(p.clone()).as_text(&self.instance.exprs);
         let (Some(x), Some(y)) = (words(x), words(y)) else {
             return self.instance.fail(Code::NotConstant, "this text must be known before the run", span);
         };
@@ -88,24 +99,35 @@ impl<'a> Operators<'_, 'a, '_> {
             BinaryOp::Ge => x >= y,
             _ => return self.instance.fail(Code::TypeMismatch, "texts can only be joined with `+` or compared", span),
         };
-        Some(Val::Scalar(self.instance.exprs.boolean(truth), Type::Boolean))
+        Some(ModelicaValue::Scalar(self.instance.exprs.boolean(truth), ScalarType::Boolean))
     }
 
-    pub(in crate::instance) fn sizes_differ<T>(&mut self, a: &Val, b: &Val, span: Span) -> Option<T> {
+    pub(in crate::instance) fn sizes_differ<T>(
+        &mut self,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
+        span: Span,
+    ) -> Option<T> {
         let message = format!("the two sides do not fit: {} and {}", a.describe(), b.describe());
         let code = if a.dims() == b.dims() { Code::TypeMismatch } else { Code::SizeMismatch };
         self.instance.fail(code, &message, span)
     }
 
-    pub(in crate::instance) fn numeric(&mut self, v: &Val, span: Span) -> Option<()> {
+    pub(in crate::instance) fn numeric(&mut self, v: &ModelicaValue, span: Span) -> Option<()> {
         match v.element_type() {
-            Some(Type::Real | Type::Integer) => Some(()),
+            Some(ScalarType::Real | ScalarType::Integer) => Some(()),
             None if v.elements().is_empty() => Some(()),
             _ => self.instance.evaluator().wrong_type("a number", v, span),
         }
     }
 
-    pub(in crate::instance) fn elementwise(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn elementwise(
+        &mut self,
+        op: BinaryOp,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         self.numeric(a, span)?;
         self.numeric(b, span)?;
         if matches!(op, BinaryOp::ElementAdd | BinaryOp::ElementSub) && a.dims() != b.dims() {
@@ -117,11 +139,17 @@ impl<'a> Operators<'_, 'a, '_> {
     }
 
     /// Scalar with array or equal shapes, element by element.
-    pub(in crate::instance) fn broadcast(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn broadcast(
+        &mut self,
+        op: BinaryOp,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         self.numeric(a, span)?;
         self.numeric(b, span)?;
         let code = scalar_op(op);
-        let real = matches!(code, Binary::Div | Binary::Pow);
+        let real = matches!(code, BinaryFunction::Div | BinaryFunction::Pow);
         let result = match (a.scalar(), b.scalar()) {
             (Some((x, tx)), _) if !b.dims().is_empty() => {
                 b.map(&mut |y, _| self.instance.exprs.binary(code, x, y)).with_type(tx)
@@ -134,24 +162,29 @@ impl<'a> Operators<'_, 'a, '_> {
                 None => return self.sizes_differ(a, b, span),
             },
         };
-        Some(if real { result.with_type(Type::Real) } else { result })
+        Some(if real { result.with_type(ScalarType::Real) } else { result })
     }
 
-    pub(in crate::instance) fn product(&mut self, a: &Val, b: &Val, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn product(
+        &mut self,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         if a.dims().is_empty() || b.dims().is_empty() {
             return self.broadcast(BinaryOp::ElementMul, a, b, span);
         }
         self.numeric(a, span)?;
         self.numeric(b, span)?;
-        let ty =
-            wider(a.element_type().unwrap_or(Type::Real), b.element_type().unwrap_or(Type::Real)).unwrap_or(Type::Real);
+        let ty = wider(a.element_type().unwrap_or(ScalarType::Real), b.element_type().unwrap_or(ScalarType::Real))
+            .unwrap_or(ScalarType::Real);
         let (da, db) = (a.dims().to_vec(), b.dims().to_vec());
         if da[da.len() - 1] != db[0] || da.len() > 2 || db.len() > 2 {
             return self.sizes_differ(a, b, span);
         }
         let (rows, inner) = if da.len() == 2 { (da[0], da[1]) } else { (1, da[0]) };
         let columns = if db.len() == 2 { db[1] } else { 1 };
-        let entry = |v: &Val, i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
+        let entry = |v: &ModelicaValue, i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
         let mut elements = Vec::with_capacity(rows * columns);
         for r in 0..rows {
             for c in 0..columns {
@@ -160,7 +193,7 @@ impl<'a> Operators<'_, 'a, '_> {
                     let term = self.instance.exprs.mul(entry(a, r * inner + k), entry(b, k * columns + c));
                     sum = self.instance.exprs.add(sum, term);
                 }
-                elements.push(Val::Scalar(sum, ty));
+                elements.push(ModelicaValue::Scalar(sum, ty));
             }
         }
         let dims: Vec<usize> = match (da.len(), db.len()) {
@@ -169,10 +202,15 @@ impl<'a> Operators<'_, 'a, '_> {
             (1, 2) => vec![columns],
             _ => return elements.pop(),
         };
-        Some(Val::array(dims, elements))
+        Some(ModelicaValue::array(dims, elements))
     }
 
-    pub(in crate::instance) fn matrix_power(&mut self, a: &Val, b: &Val, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn matrix_power(
+        &mut self,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         let n = b.as_number(&self.instance.exprs).filter(|n| *n >= 0.0 && n.fract() == 0.0 && *n <= 100.0);
         let (&[r, c], Some(n)) = (a.dims(), n) else { return self.sizes_differ(a, b, span) };
         if r != c {
@@ -185,12 +223,18 @@ impl<'a> Operators<'_, 'a, '_> {
         Some(result)
     }
 
-    pub(in crate::instance) fn identity(&mut self, n: usize) -> Val {
+    pub(in crate::instance) fn identity(&mut self, n: usize) -> ModelicaValue {
         let elements = (0..n * n).map(|i| if i % (n + 1) == 0 { Exprs::ONE } else { Exprs::ZERO });
-        Val::array(vec![n, n], elements.map(|e| Val::Scalar(e, Type::Integer)).collect())
+        ModelicaValue::array(vec![n, n], elements.map(|e| ModelicaValue::Scalar(e, ScalarType::Integer)).collect())
     }
 
-    pub(in crate::instance) fn relation(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn relation(
+        &mut self,
+        op: BinaryOp,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         let (Some((x, tx)), Some((y, ty))) = (a.scalar(), b.scalar()) else {
             return self.sizes_differ(a, b, span);
         };
@@ -198,17 +242,17 @@ impl<'a> Operators<'_, 'a, '_> {
             return self.sizes_differ(a, b, span);
         }
         let rel = match op {
-            BinaryOp::Lt => Rel::Lt,
-            BinaryOp::Le => Rel::Le,
-            BinaryOp::Gt => Rel::Gt,
-            BinaryOp::Ge => Rel::Ge,
-            BinaryOp::Eq => Rel::Eq,
-            _ => Rel::Ne,
+            BinaryOp::Lt => RelationalOp::Lt,
+            BinaryOp::Le => RelationalOp::Le,
+            BinaryOp::Gt => RelationalOp::Gt,
+            BinaryOp::Ge => RelationalOp::Ge,
+            BinaryOp::Eq => RelationalOp::Eq,
+            _ => RelationalOp::Ne,
         };
         let plain = self.instance.eval.mode.no_event
             || self.instance.eval.mode.procedure
             || self.instance.variability(x).max(self.instance.variability(y)) <= Variability::Discrete;
-        if !plain && matches!(rel, Rel::Eq | Rel::Ne) {
+        if !plain && matches!(rel, RelationalOp::Eq | RelationalOp::Ne) {
             self.instance.report(
                 Diagnostic::new(Code::TypeMismatch, "two Reals cannot be compared with `==` or `<>` in a model")
                     .at(span, "Reals that change continuously are never exactly equal")
@@ -217,16 +261,16 @@ impl<'a> Operators<'_, 'a, '_> {
             return None;
         }
         let e = if plain { self.instance.exprs.rel(rel, x, y) } else { self.instance.exprs.event_rel(rel, x, y) };
-        Some(Val::Scalar(e, Type::Boolean))
+        Some(ModelicaValue::Scalar(e, ScalarType::Boolean))
     }
 }
 
-pub(in crate::instance) fn scalar_op(op: BinaryOp) -> Binary {
+pub(in crate::instance) fn scalar_op(op: BinaryOp) -> BinaryFunction {
     match op {
-        BinaryOp::Add | BinaryOp::ElementAdd => Binary::Add,
-        BinaryOp::Sub | BinaryOp::ElementSub => Binary::Sub,
-        BinaryOp::Div | BinaryOp::ElementDiv => Binary::Div,
-        BinaryOp::Pow | BinaryOp::ElementPow => Binary::Pow,
-        _ => Binary::Mul,
+        BinaryOp::Add | BinaryOp::ElementAdd => BinaryFunction::Add,
+        BinaryOp::Sub | BinaryOp::ElementSub => BinaryFunction::Sub,
+        BinaryOp::Div | BinaryOp::ElementDiv => BinaryFunction::Div,
+        BinaryOp::Pow | BinaryOp::ElementPow => BinaryFunction::Pow,
+        _ => BinaryFunction::Mul,
     }
 }

@@ -1,14 +1,14 @@
 //! Operator records: operators and constructors that a record class gives its values (MLS 14).
 
-use crate::instance::call::{Callee, Formal};
+use crate::instance::call::{Callee, FormalParameter};
 use crate::instance::calls::binding::is_input;
-use crate::instance::lookup::{Builtin, Found};
+use crate::instance::lookup::{BuiltinType, LookupResult};
 use crate::instance::template::Template;
-use crate::instance::value::Val;
-use crate::instance::vectorised::Given;
+use crate::instance::value::ModelicaValue;
+use crate::instance::vectorised::CallArguments;
 use crate::instance::{ClassRef, Operators};
-use bramah_expr::types::Type;
-use bramah_syntax::ast::{BinaryOp, Causality, ClassKind, UnaryOp};
+use bramah_expr::types::ScalarType;
+use bramah_syntax::ast::{BinaryOp, CausalityPrefix, ClassKind, UnaryOp};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
@@ -57,10 +57,10 @@ impl<'a> Operators<'_, 'a, '_> {
     }
 
     /// The class of an operator record, or of the elements of an array of them.
-    fn record_class(value: &Val) -> Option<u32> {
+    fn record_class(value: &ModelicaValue) -> Option<u32> {
         match value {
-            Val::Record(record) => record.class,
-            Val::Array { elements, .. } => elements.first().and_then(Self::record_class),
+            ModelicaValue::Record(record) => record.class,
+            ModelicaValue::Array { elements, .. } => elements.first().and_then(Self::record_class),
             _ => None,
         }
     }
@@ -69,10 +69,10 @@ impl<'a> Operators<'_, 'a, '_> {
     pub(in crate::instance) fn overloaded_binary(
         &mut self,
         op: BinaryOp,
-        a: &Val,
-        b: &Val,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
         span: Span,
-    ) -> Option<Option<Val>> {
+    ) -> Option<Option<ModelicaValue>> {
         let classes: Vec<u32> = [a, b].into_iter().filter_map(Self::record_class).collect();
         if classes.is_empty() {
             return None;
@@ -80,7 +80,14 @@ impl<'a> Operators<'_, 'a, '_> {
         Some(self.apply_binary(op, a, b, &classes, span))
     }
 
-    fn apply_binary(&mut self, op: BinaryOp, a: &Val, b: &Val, classes: &[u32], span: Span) -> Option<Val> {
+    fn apply_binary(
+        &mut self,
+        op: BinaryOp,
+        a: &ModelicaValue,
+        b: &ModelicaValue,
+        classes: &[u32],
+        span: Span,
+    ) -> Option<ModelicaValue> {
         let name = name_of(op)?;
         let mut functions = Vec::new();
         for &class in classes {
@@ -113,7 +120,7 @@ impl<'a> Operators<'_, 'a, '_> {
     }
 
     /// Element by element: arrays of one size, or an array and a single value (MLS 14.5).
-    fn by_elements(&mut self, op: BinaryOp, a: &Val, b: &Val, span: Span) -> Option<Val> {
+    fn by_elements(&mut self, op: BinaryOp, a: &ModelicaValue, b: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         let (da, db) = (a.dims().to_vec(), b.dims().to_vec());
         let plain = matches!(op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Eq | BinaryOp::Ne);
         let fits = !(da.is_empty() && db.is_empty()) && (da == db || !plain && (da.is_empty() || db.is_empty()));
@@ -125,31 +132,31 @@ impl<'a> Operators<'_, 'a, '_> {
         }
         let dims = if da.is_empty() { db } else { da };
         let count: usize = dims.iter().product();
-        let at = |v: &Val, i: usize| if v.dims().is_empty() { v.clone() } else { v.elements()[i].clone() };
+        let at = |v: &ModelicaValue, i: usize| if v.dims().is_empty() { v.clone() } else { v.elements()[i].clone() };
         let mut elements = Vec::with_capacity(count);
         for i in 0..count {
             elements.push(self.binary(op, at(a, i), at(b, i), span)?);
         }
-        Some(Val::array(dims, elements))
+        Some(ModelicaValue::array(dims, elements))
     }
 
     /// A unary operator on an operator record; `None` where it is none.
     pub(in crate::instance) fn overloaded_unary(
         &mut self,
         op: UnaryOp,
-        value: &Val,
+        value: &ModelicaValue,
         span: Span,
-    ) -> Option<Option<Val>> {
+    ) -> Option<Option<ModelicaValue>> {
         let class = Self::record_class(value)?;
         let name = match op {
             UnaryOp::Minus | UnaryOp::ElementMinus => "'-'",
             UnaryOp::Not => "'not'",
             UnaryOp::Plus | UnaryOp::ElementPlus => return Some(Some(value.clone())),
         };
-        if let Val::Array { dims, elements } = value {
-            let each: Option<Vec<Val>> =
+        if let ModelicaValue::Array { dims, elements } = value {
+            let each: Option<Vec<ModelicaValue>> =
                 elements.iter().map(|v| self.overloaded_unary(op, v, span).flatten()).collect();
-            return Some(each.map(|all| Val::array(dims.clone(), all)));
+            return Some(each.map(|all| ModelicaValue::array(dims.clone(), all)));
         }
         let functions = self.operators(class, name);
         Some(match self.fitting(&functions, std::slice::from_ref(value))[..] {
@@ -166,16 +173,16 @@ impl<'a> Operators<'_, 'a, '_> {
     pub(in crate::instance) fn overloaded_constructor(
         &mut self,
         class: &ClassRef<'a>,
-        given: &Given,
+        given: &CallArguments,
         span: Span,
-    ) -> Option<Option<Val>> {
+    ) -> Option<Option<ModelicaValue>> {
         let number = self.operator_class(class)?;
         let functions = self.operators(number, "'constructor'");
         if functions.is_empty() {
             return None;
         }
         for f in &functions {
-            let outputs = self.instance.calls().formals(f, |c, _| c.prefix.causality == Some(Causality::Output));
+            let outputs = self.instance.calls().formals(f, |c, _| c.prefix.causality == Some(CausalityPrefix::Output));
             if let [_, second, ..] = outputs.as_slice() {
                 let at = second.component.name.span;
                 let message = format!("the constructor `{}` has more than one output", f.name);
@@ -197,7 +204,7 @@ impl<'a> Operators<'_, 'a, '_> {
         })
     }
 
-    fn ambiguous(&mut self, name: &str, span: Span) -> Option<Val> {
+    fn ambiguous(&mut self, name: &str, span: Span) -> Option<ModelicaValue> {
         let d = Diagnostic::new(Code::BadCall, format!("more than one function of {name} takes these arguments"));
         self.instance.report(
             d.at(span, "not clear which").help("let their inputs differ in type or number").note("Modelica 3.6, 14"),
@@ -207,11 +214,11 @@ impl<'a> Operators<'_, 'a, '_> {
 
     /// The functions behind an operator of a record class: the operator itself, or those it holds.
     fn operators(&mut self, class: u32, name: &str) -> Vec<Callee<'a>> {
-        let record = Found::Class(self.instance.operator_records[class as usize].clone());
-        let Some(found @ Found::Class(_)) = self.instance.names().member(&record, Symbol::new(name)) else {
+        let record = LookupResult::Class(self.instance.operator_records[class as usize].clone());
+        let Some(found @ LookupResult::Class(_)) = self.instance.names().member(&record, Symbol::new(name)) else {
             return Vec::new();
         };
-        let Found::Class(operator) = &found else { return Vec::new() };
+        let LookupResult::Class(operator) = &found else { return Vec::new() };
         let template = self.instance.names().template(operator.class, operator.parent);
         if matches!(template.kind, ClassKind::Function { .. }) {
             return vec![self.callee(operator)];
@@ -219,7 +226,7 @@ impl<'a> Operators<'_, 'a, '_> {
         let names: Vec<Symbol> = template.elements.iter().map(|e| e.name).collect();
         let mut functions = Vec::new();
         for name in names {
-            if let Some(Found::Class(f)) = self.instance.names().member(&found, name) {
+            if let Some(LookupResult::Class(f)) = self.instance.names().member(&found, name) {
                 functions.push(self.callee(&f));
             }
         }
@@ -236,11 +243,16 @@ impl<'a> Operators<'_, 'a, '_> {
     }
 
     /// Which functions take exactly these arguments.
-    fn fitting(&mut self, functions: &[Callee<'a>], args: &[Val]) -> Vec<usize> {
+    fn fitting(&mut self, functions: &[Callee<'a>], args: &[ModelicaValue]) -> Vec<usize> {
         (0..functions.len()).filter(|&k| self.takes(&functions[k], args, &[])).collect()
     }
 
-    fn takes(&mut self, function: &Callee<'a>, args: &[Val], named: &[(bramah_syntax::ast::Ident, Val)]) -> bool {
+    fn takes(
+        &mut self,
+        function: &Callee<'a>,
+        args: &[ModelicaValue],
+        named: &[(bramah_syntax::ast::Ident, ModelicaValue)],
+    ) -> bool {
         let inputs = self.instance.calls().formals(function, is_input);
         if args.len() > inputs.len() || named.iter().any(|(n, _)| inputs[args.len()..].iter().all(|f| f.name != n.name))
         {
@@ -259,14 +271,14 @@ impl<'a> Operators<'_, 'a, '_> {
         true
     }
 
-    fn fits_input(&mut self, f: &Formal<'a>, value: &Val) -> bool {
+    fn fits_input(&mut self, f: &FormalParameter<'a>, value: &ModelicaValue) -> bool {
         if f.component.subscripts.len() != value.dims().len() {
             return false;
         }
         let element = value.elements().first();
         match self.instance.names().lookup_path(f.view, &f.component.class) {
-            Ok(Found::Builtin(b)) => fits_builtin(b, element),
-            Ok(Found::Class(c)) => match self.instance.names().template(c.class, c.parent).builtin {
+            Ok(LookupResult::Builtin(b)) => fits_builtin(b, element),
+            Ok(LookupResult::Class(c)) => match self.instance.names().template(c.class, c.parent).builtin {
                 Some(b) => fits_builtin(b, element),
                 None => {
                     let wanted = self.operator_class(&c);
@@ -278,7 +290,7 @@ impl<'a> Operators<'_, 'a, '_> {
     }
 
     /// A value as a record of a class, by the constructor that takes it alone.
-    fn converted_to(&mut self, value: &Val, class: u32, span: Span) -> Option<Val> {
+    fn converted_to(&mut self, value: &ModelicaValue, class: u32, span: Span) -> Option<ModelicaValue> {
         if Self::record_class(value).is_some() || !value.dims().is_empty() {
             return None;
         }
@@ -290,13 +302,13 @@ impl<'a> Operators<'_, 'a, '_> {
     }
 }
 
-fn fits_builtin(wanted: Builtin, value: Option<&Val>) -> bool {
+fn fits_builtin(wanted: BuiltinType, value: Option<&ModelicaValue>) -> bool {
     match (wanted, value) {
-        (Builtin::Real, Some(Val::Scalar(_, Type::Real | Type::Integer))) => true,
-        (Builtin::Integer, Some(Val::Scalar(_, Type::Integer))) => true,
-        (Builtin::Boolean, Some(Val::Scalar(_, Type::Boolean))) => true,
-        (Builtin::String, Some(Val::Text(_))) => true,
-        (Builtin::Enumeration(a), Some(Val::Scalar(_, Type::Enumeration(b)))) => a == *b,
+        (BuiltinType::Real, Some(ModelicaValue::Scalar(_, ScalarType::Real | ScalarType::Integer))) => true,
+        (BuiltinType::Integer, Some(ModelicaValue::Scalar(_, ScalarType::Integer))) => true,
+        (BuiltinType::Boolean, Some(ModelicaValue::Scalar(_, ScalarType::Boolean))) => true,
+        (BuiltinType::String, Some(ModelicaValue::Text(_))) => true,
+        (BuiltinType::Enumeration(a), Some(ModelicaValue::Scalar(_, ScalarType::Enumeration(b)))) => a == *b,
         _ => false,
     }
 }

@@ -3,19 +3,19 @@
 use crate::instance::building::components::says;
 use crate::instance::building::given::QUANTITY;
 use crate::instance::errors::short;
-use crate::instance::lookup::Found;
+use crate::instance::lookup::LookupResult;
 use crate::instance::modifiers::Binding;
-use crate::instance::template::Kind;
-use crate::instance::value::Val;
-use crate::instance::{ParameterValues, View};
-use bramah_expr::types::{Type, Variability};
+use crate::instance::template::TemplateElementKind;
+use crate::instance::value::ModelicaValue;
+use crate::instance::{LookupContext, ParameterValues};
+use bramah_expr::types::{ScalarType, Variability};
 use bramah_syntax::ast::{self, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
 impl<'a> ParameterValues<'_, 'a, '_> {
     /// The value of a constant or parameter.
-    pub(in crate::instance) fn known_value(&mut self, i: u32, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn known_value(&mut self, i: u32, span: Span) -> Option<ModelicaValue> {
         let data = &mut self.instance.variables[i as usize];
         if let Some(known) = &data.constant {
             return known.clone().ok();
@@ -39,7 +39,7 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         value
     }
 
-    pub(in crate::instance) fn find_known(&mut self, i: u32, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn find_known(&mut self, i: u32, span: Span) -> Option<ModelicaValue> {
         let data = &self.instance.variables[i as usize];
         let (name, declared, ty) = (data.name.clone(), data.span, data.ty);
         let start = data.attributes.iter().find(|(n, _)| *n == "start").map(|(_, b)| b.clone());
@@ -65,7 +65,7 @@ impl<'a> ParameterValues<'_, 'a, '_> {
     }
 
     /// The value bound to a variable; a quantity given from outside is converted to the variable's unit.
-    pub fn bound(&mut self, i: u32, b: &Binding<'a>, constant: bool) -> Option<Val> {
+    pub fn bound(&mut self, i: u32, b: &Binding<'a>, constant: bool) -> Option<ModelicaValue> {
         if Some(b.expr.span.file) == self.instance.eval.override_file
             && let Some(v) = self.outside_value(i, b)
         {
@@ -74,10 +74,10 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         let value = self.instance.evaluator().binding_value(b, constant)?;
         let data = &self.instance.variables[i as usize];
         match (data.string, &value) {
-            (false, Val::Text(_) | Val::Object(_)) if !data.object => {
+            (false, ModelicaValue::Text(_) | ModelicaValue::Object(_)) if !data.object => {
                 let name = data.name.clone();
                 let message = format!("`{name}` is {} and cannot take {}", type_name(data.ty), value.describe());
-                let numeric = data.ty == Type::Real;
+                let numeric = data.ty == ScalarType::Real;
                 let mut d = Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name);
                 if numeric {
                     d = d.help("write a number without quotes, in the SI unit of the variable: 200 bar are `200e5`; only `--set` and experiment files take units");
@@ -85,14 +85,14 @@ impl<'a> ParameterValues<'_, 'a, '_> {
                 self.instance.report(d);
                 None
             }
-            (_, other) if data.object && !matches!(other, Val::Object(_)) => {
+            (_, other) if data.object && !matches!(other, ModelicaValue::Object(_)) => {
                 let name = data.name.clone();
                 let message = format!("`{name}` is an external object and cannot take {}", value.describe());
                 self.instance
                     .report(Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name));
                 None
             }
-            (true, other) if !matches!(other, Val::Text(_)) => {
+            (true, other) if !matches!(other, ModelicaValue::Text(_)) => {
                 let name = data.name.clone();
                 let message = format!("`{name}` is a String and cannot take {}", value.describe());
                 let d = Diagnostic::new(Code::TypeMismatch, message).at(b.expr.span, "the value").instance(name);
@@ -105,10 +105,10 @@ impl<'a> ParameterValues<'_, 'a, '_> {
 
     /// Values from outside may be quantities with units, literals of the variable's own enumeration, and texts without
     /// quotes.
-    pub(in crate::instance) fn outside_value(&mut self, i: u32, b: &Binding<'a>) -> Option<Option<Val>> {
+    pub(in crate::instance) fn outside_value(&mut self, i: u32, b: &Binding<'a>) -> Option<Option<ModelicaValue>> {
         let data = &self.instance.variables[i as usize];
         if data.string && !matches!(b.expr.kind, ExprKind::String(_)) {
-            return self.instance.eval.texts.get(&data.name).map(|raw| Some(Val::text(raw.trim())));
+            return self.instance.eval.texts.get(&data.name).map(|raw| Some(ModelicaValue::text(raw.trim())));
         }
         match &b.expr.kind {
             ExprKind::Call { function, args, .. } if function.parts[0].name.name == QUANTITY => {
@@ -118,13 +118,16 @@ impl<'a> ParameterValues<'_, 'a, '_> {
                 );
                 let x = number.as_number(&self.instance.exprs)?;
                 let unit = unit.as_text(&self.instance.exprs)?;
-                Some(self.converted(i, x, &unit).map(|x| Val::Scalar(self.instance.exprs.num(x), Type::Real)))
+                Some(
+                    self.converted(i, x, &unit)
+                        .map(|x| ModelicaValue::Scalar(self.instance.exprs.num(x), ScalarType::Real)),
+                )
             }
             ExprKind::Reference(r) if r.parts.len() == 1 => {
-                let Type::Enumeration(e) = self.instance.variables[i as usize].ty else { return None };
+                let ScalarType::Enumeration(e) = self.instance.variables[i as usize].ty else { return None };
                 let at =
                     self.instance.enumerations[e as usize].literals.iter().position(|l| *l == r.parts[0].name.name)?;
-                Some(Some(Val::Scalar(self.instance.exprs.num(at as f64 + 1.0), Type::Enumeration(e))))
+                Some(Some(ModelicaValue::Scalar(self.instance.exprs.num(at as f64 + 1.0), ScalarType::Enumeration(e))))
             }
             _ => None,
         }
@@ -133,7 +136,8 @@ impl<'a> ParameterValues<'_, 'a, '_> {
     pub(in crate::instance) fn converted(&mut self, i: u32, x: f64, unit: &str) -> Option<f64> {
         let name = self.instance.variables[i as usize].name.clone();
         let own = self.text_attribute(i, "unit").unwrap_or_default();
-        let parsed = (bramah_expr::units::Unit::parse(unit), bramah_expr::units::Unit::parse(&own));
+        let parsed =
+            (bramah_expr::units::MeasurementUnit::parse(unit), bramah_expr::units::MeasurementUnit::parse(&own));
         let converted = match parsed {
             (Ok(from), Ok(to)) if from.dimension == to.dimension && from.offset != to.offset => {
                 match self.is_difference(i) {
@@ -183,7 +187,7 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         }
         let mut from_a_zero = |attribute: &str| {
             let unit = self.text_attribute(i, attribute).unwrap_or_default();
-            bramah_expr::units::Unit::parse(&unit).is_ok_and(|u| u.offset != 0.0)
+            bramah_expr::units::MeasurementUnit::parse(&unit).is_ok_and(|u| u.offset != 0.0)
         };
         let from_a_zero = from_a_zero("unit") || from_a_zero("displayUnit");
         (from_a_zero || quantity.ends_with("Temperature")).then_some(false)
@@ -198,9 +202,9 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         let Some(element) = template.by_name.get(&name).map(|&e| &template.elements[e as usize]) else {
             return Vec::new();
         };
-        let Kind::Component(declared) = element.kind else { return Vec::new() };
-        match self.instance.names().lookup_path(View { scope, base: element.base }, &declared.class) {
-            Ok(Found::Class(c)) => {
+        let TemplateElementKind::Component(declared) = element.kind else { return Vec::new() };
+        match self.instance.names().lookup_path(LookupContext { scope, base: element.base }, &declared.class) {
+            Ok(LookupResult::Class(c)) => {
                 self.instance.names().template(c.class, c.parent).bases.iter().map(|b| b.ast).collect()
             }
             _ => Vec::new(),
@@ -227,7 +231,7 @@ impl<'a> ParameterValues<'_, 'a, '_> {
     }
 
     /// An attribute that must be known while the model is built, such as `fixed`.
-    pub fn known_attribute(&mut self, i: u32, attribute: Symbol, b: &Binding<'a>, ty: Type) -> Option<f64> {
+    pub fn known_attribute(&mut self, i: u32, attribute: Symbol, b: &Binding<'a>, ty: ScalarType) -> Option<f64> {
         let value = self.instance.evaluator().binding_value(b, true)?;
         let name = format!("{}.{attribute}", self.instance.variables[i as usize].name);
         self.coerce(value, ty, &name, b.expr.span)?.as_number(&self.instance.exprs)
@@ -245,20 +249,22 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         }
     }
 
-    pub(in crate::instance) fn type_words(&self, ty: Type) -> String {
+    pub(in crate::instance) fn type_words(&self, ty: ScalarType) -> String {
         match ty {
-            Type::Enumeration(i) => format!("an enumeration `{}`", short(&self.instance.enumerations[i as usize].name)),
+            ScalarType::Enumeration(i) => {
+                format!("an enumeration `{}`", short(&self.instance.enumerations[i as usize].name))
+            }
             other => type_name(other).into(),
         }
     }
 
     /// Checks a value against the type of the variable that takes it.
-    pub fn coerce(&mut self, value: Val, ty: Type, name: &str, span: Span) -> Option<Val> {
+    pub fn coerce(&mut self, value: ModelicaValue, ty: ScalarType, name: &str, span: Span) -> Option<ModelicaValue> {
         match &value {
-            Val::Text(_) | Val::Object(_) => Some(value),
-            Val::Scalar(e, own) => match (own, ty) {
+            ModelicaValue::Text(_) | ModelicaValue::Object(_) => Some(value),
+            ModelicaValue::Scalar(e, own) => match (own, ty) {
                 (a, b) if *a == b => Some(value),
-                (Type::Integer, Type::Real) => Some(Val::Scalar(*e, Type::Real)),
+                (ScalarType::Integer, ScalarType::Real) => Some(ModelicaValue::Scalar(*e, ScalarType::Real)),
                 _ => {
                     let (wanted, given) = (self.type_words(ty), self.type_words(*own));
                     let d =
@@ -283,24 +289,28 @@ impl<'a> ParameterValues<'_, 'a, '_> {
 }
 
 /// How a value of one type is made one of another.
-pub(in crate::instance) fn conversion(from: Type, to: Type) -> &'static str {
+pub(in crate::instance) fn conversion(from: ScalarType, to: ScalarType) -> &'static str {
     match (from, to) {
-        (Type::Real, Type::Integer) => {
+        (ScalarType::Real, ScalarType::Integer) => {
             "`integer(x)` is the whole number below `x`, `div(a, b)` divides whole numbers; or declare it as Real"
         }
-        (Type::Real | Type::Integer, Type::Boolean) => "write a relation, as in `x > 0`, or `true` and `false`",
-        (Type::Boolean, Type::Real | Type::Integer) => "write `if b then 1 else 0`",
-        (Type::Enumeration(_), Type::Real | Type::Integer) => "`Integer(e)` is the number of an enumeration value",
-        (_, Type::Enumeration(_)) => "give one of the literals of its type, as in `Type.literal`",
+        (ScalarType::Real | ScalarType::Integer, ScalarType::Boolean) => {
+            "write a relation, as in `x > 0`, or `true` and `false`"
+        }
+        (ScalarType::Boolean, ScalarType::Real | ScalarType::Integer) => "write `if b then 1 else 0`",
+        (ScalarType::Enumeration(_), ScalarType::Real | ScalarType::Integer) => {
+            "`Integer(e)` is the number of an enumeration value"
+        }
+        (_, ScalarType::Enumeration(_)) => "give one of the literals of its type, as in `Type.literal`",
         _ => "declare both with the same type",
     }
 }
 
-pub(in crate::instance) fn type_name(ty: Type) -> &'static str {
+pub(in crate::instance) fn type_name(ty: ScalarType) -> &'static str {
     match ty {
-        Type::Real => "a Real",
-        Type::Integer => "an Integer",
-        Type::Boolean => "a Boolean",
-        Type::Enumeration(_) => "an enumeration",
+        ScalarType::Real => "a Real",
+        ScalarType::Integer => "an Integer",
+        ScalarType::Boolean => "a Boolean",
+        ScalarType::Enumeration(_) => "an enumeration",
     }
 }

@@ -1,9 +1,9 @@
 //! Ports and components that references in connections name.
 
-use crate::instance::evaluation::references::{Descent, Selection};
-use crate::instance::lookup::Found;
-use crate::instance::{ElementState, Evaluator, Node, NodeId, ScopeId, View};
-use bramah_syntax::ast::Reference;
+use crate::instance::evaluation::references::{NodeSelection, ReferenceTarget};
+use crate::instance::lookup::LookupResult;
+use crate::instance::{ElementState, Evaluator, InstanceNode, LookupContext, NodeId, ScopeId};
+use bramah_syntax::ast::ComponentReference;
 use bramah_syntax::diag::Code;
 use bramah_syntax::symbol::Symbol;
 
@@ -12,11 +12,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
     /// absent, for then the connection vanishes.
     pub fn port_selection(
         &mut self,
-        r: &'a Reference,
+        r: &'a ComponentReference,
         scope: ScopeId,
         index: u32,
-        view: View,
-    ) -> Option<Option<Selection>> {
+        view: LookupContext,
+    ) -> Option<Option<NodeSelection>> {
         let Some(node) = self.instance.builder().component(scope, index) else {
             let absent = matches!(self.instance.scope(scope).elements[index as usize], ElementState::Absent);
             return absent.then_some(None);
@@ -28,7 +28,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                     return Some(None);
                 }
                 match self.descend(&at, p) {
-                    Descent::Nodes(next) => at = next,
+                    ReferenceTarget::Nodes(next) => at = next,
                     _ => return None,
                 }
             }
@@ -49,15 +49,15 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// The one component that a reference names.
-    pub(in crate::instance) fn named_node(&mut self, r: &'a Reference, view: View) -> Option<NodeId> {
+    pub(in crate::instance) fn named_node(&mut self, r: &'a ComponentReference, view: LookupContext) -> Option<NodeId> {
         let from = if r.global { crate::instance::ROOT } else { view };
-        let Found::Component(scope, index) = self.instance.names().lookup(from, r.parts[0].name.name)? else {
+        let LookupResult::Component(scope, index) = self.instance.names().lookup(from, r.parts[0].name.name)? else {
             return None;
         };
         let mut node = self.instance.builder().component(scope, index)?;
         for (i, part) in r.parts.iter().enumerate() {
             if i > 0 {
-                let Node::Object(s) = *self.instance.node(node) else { return None };
+                let InstanceNode::Object(s) = *self.instance.node(node) else { return None };
                 let index = *self.instance.scope(s).template.by_name.get(&part.name.name)?;
                 node = self.instance.builder().component(s, index)?;
             }
@@ -70,9 +70,9 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(node)
     }
 
-    pub(in crate::instance) fn any_absent(&mut self, at: &Selection, name: Symbol) -> bool {
+    pub(in crate::instance) fn any_absent(&mut self, at: &NodeSelection, name: Symbol) -> bool {
         at.nodes.iter().any(|&n| {
-            let Node::Object(s) = *self.instance.node(n) else { return false };
+            let InstanceNode::Object(s) = *self.instance.node(n) else { return false };
             let Some(&i) = self.instance.scope(s).template.by_name.get(&name) else { return false };
             matches!(self.instance.scope(s).elements[i as usize], ElementState::Absent)
         })

@@ -1,61 +1,63 @@
 //! Ranges, loops over them, and sizes, which must be known.
 
-use crate::instance::deduce::Body;
-use crate::instance::value::Val;
-use crate::instance::{Evaluator, View};
-use bramah_expr::types::{Type, Variability};
+use crate::instance::deduce::LoopBody;
+use crate::instance::value::ModelicaValue;
+use crate::instance::{Evaluator, LookupContext};
+use bramah_expr::types::{ScalarType, Variability};
 use bramah_syntax::ast::{Expr, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 
 impl<'a> Evaluator<'_, 'a, '_> {
     /// A dimension: a whole number that must be known, or a type whose values count.
-    pub(in crate::instance) fn extent(&mut self, e: &'a Expr, view: View) -> Option<Extent> {
+    pub(in crate::instance) fn extent(&mut self, e: &'a Expr, view: LookupContext) -> Option<ArrayExtent> {
         if let Some(values) = self.enumeration_range(e, view) {
-            let by = values.first().and_then(Val::element_type)?;
-            return Some(Extent { size: values.len(), by });
+            let by = values.first().and_then(ModelicaValue::element_type)?;
+            return Some(ArrayExtent { size: values.len(), by });
         }
-        Some(Extent { size: self.dimension(e, view)?, by: Type::Integer })
+        Some(ArrayExtent { size: self.dimension(e, view)?, by: ScalarType::Integer })
     }
 
     /// A size that must be known.
-    pub(in crate::instance) fn dimension(&mut self, e: &'a Expr, view: View) -> Option<usize> {
+    pub(in crate::instance) fn dimension(&mut self, e: &'a Expr, view: LookupContext) -> Option<usize> {
         let value = self.constant(e, view)?;
         match (value.scalar(), value.as_number(&self.instance.exprs)) {
-            (Some((_, Type::Integer)), Some(x)) if (0.0..1e9).contains(&x) => Some(x as usize),
-            (Some((_, Type::Integer)), Some(x)) => {
+            (Some((_, ScalarType::Integer)), Some(x)) if (0.0..1e9).contains(&x) => Some(x as usize),
+            (Some((_, ScalarType::Integer)), Some(x)) => {
                 self.instance.fail(Code::OutOfRange, &format!("an array cannot have {x} elements"), e.span)
             }
-            (Some((_, Type::Integer)), None) => {
+            (Some((_, ScalarType::Integer)), None) => {
                 self.instance.fail(Code::NotConstant, "the size of an array must be known before the run", e.span)
             }
             _ => self.wrong_type("an Integer", &value, e.span),
         }
     }
 
-    pub(in crate::instance) fn range(&mut self, e: &'a Expr, view: View) -> Option<Val> {
+    pub(in crate::instance) fn range(&mut self, e: &'a Expr, view: LookupContext) -> Option<ModelicaValue> {
         let ExprKind::Range { from, step, to } = &e.kind else { return None };
         let from = self.known_number(from, view)?;
         let to = self.known_number(to, view)?;
         let step = match step {
             Some(s) => self.known_number(s, view)?,
-            None => (1.0, Type::Integer),
+            None => (1.0, ScalarType::Integer),
         };
         if step.0 == 0.0 {
             return self.instance.fail(Code::OutOfRange, "the step of a range is 0", e.span);
         }
-        let ty = [from.1, step.1, to.1].into_iter().find(|t| *t != Type::Integer).unwrap_or(Type::Integer);
+        let ty = [from.1, step.1, to.1].into_iter().find(|t| *t != ScalarType::Integer).unwrap_or(ScalarType::Integer);
         // A tiny allowance keeps 0:0.1:1 at eleven elements.
         let count = ((to.0 - from.0) / step.0 + 1e-10).floor() + 1.0;
         if count > 1e7 {
             return self.instance.fail(Code::TooLarge, "this range has more than ten million elements", e.span);
         }
         let count = count.max(0.0) as usize;
-        let values = (0..count).map(|i| Val::Scalar(self.instance.exprs.num(from.0 + step.0 * i as f64), ty)).collect();
-        Some(Val::array(vec![count], values))
+        let values = (0..count)
+            .map(|i| ModelicaValue::Scalar(self.instance.exprs.num(from.0 + step.0 * i as f64), ty))
+            .collect();
+        Some(ModelicaValue::array(vec![count], values))
     }
 
     /// A number that must be known, with its type; in functions it may depend on inputs that are known.
-    pub(in crate::instance) fn known_number(&mut self, e: &'a Expr, view: View) -> Option<(f64, Type)> {
+    pub(in crate::instance) fn known_number(&mut self, e: &'a Expr, view: LookupContext) -> Option<(f64, ScalarType)> {
         let value = if self.instance.eval.mode.procedure || self.instance.eval.frame > 0 {
             self.eval(e, view)
         } else {
@@ -75,13 +77,17 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
-    pub(in crate::instance) fn truth_values(&mut self) -> Vec<Val> {
-        [false, true].map(|b| Val::Scalar(self.instance.exprs.boolean(b), Type::Boolean)).into()
+    pub(in crate::instance) fn truth_values(&mut self) -> Vec<ModelicaValue> {
+        [false, true].map(|b| ModelicaValue::Scalar(self.instance.exprs.boolean(b), ScalarType::Boolean)).into()
     }
 
     /// The literals when a range is an enumeration type or `Boolean`.
-    pub(in crate::instance) fn enumeration_range(&mut self, e: &'a Expr, view: View) -> Option<Vec<Val>> {
-        use crate::instance::lookup::{Builtin, Found};
+    pub(in crate::instance) fn enumeration_range(
+        &mut self,
+        e: &'a Expr,
+        view: LookupContext,
+    ) -> Option<Vec<ModelicaValue>> {
+        use crate::instance::lookup::{BuiltinType, LookupResult};
         let ExprKind::Reference(r) = &e.kind else { return None };
         if r.parts.iter().any(|p| !p.subscripts.is_empty()) {
             return None;
@@ -95,15 +101,19 @@ impl<'a> Evaluator<'_, 'a, '_> {
             span: r.span,
         };
         let builtin = match self.instance.names().lookup_path(view, &path).ok()? {
-            Found::Builtin(b) => b,
-            Found::Class(c) => self.instance.names().template(c.class, c.parent).builtin?,
-            Found::Component(..) => return None,
+            LookupResult::Builtin(b) => b,
+            LookupResult::Class(c) => self.instance.names().template(c.class, c.parent).builtin?,
+            LookupResult::Component(..) => return None,
         };
         match builtin {
-            Builtin::Boolean => Some(self.truth_values()),
-            Builtin::Enumeration(i) => {
+            BuiltinType::Boolean => Some(self.truth_values()),
+            BuiltinType::Enumeration(i) => {
                 let n = self.instance.enumerations[i as usize].literals.len();
-                Some((1..=n).map(|k| Val::Scalar(self.instance.exprs.num(k as f64), Type::Enumeration(i))).collect())
+                Some(
+                    (1..=n)
+                        .map(|k| ModelicaValue::Scalar(self.instance.exprs.num(k as f64), ScalarType::Enumeration(i)))
+                        .collect(),
+                )
             }
             _ => None,
         }
@@ -112,10 +122,10 @@ impl<'a> Evaluator<'_, 'a, '_> {
     /// The values a loop variable takes.
     pub(in crate::instance) fn iterate(
         &mut self,
-        iterator: &'a bramah_syntax::ast::Iterator,
-        body: Body<'a>,
-        view: View,
-    ) -> Option<Vec<Val>> {
+        iterator: &'a bramah_syntax::ast::ForIndex,
+        body: LoopBody<'a>,
+        view: LookupContext,
+    ) -> Option<Vec<ModelicaValue>> {
         let Some(range) = &iterator.range else { return self.deduced_range(iterator, body, view) };
         if let Some(values) = self.enumeration_range(range, view) {
             return Some(values);
@@ -129,26 +139,26 @@ impl<'a> Evaluator<'_, 'a, '_> {
         let mut scalars = Vec::new();
         value.scalars(&mut scalars);
         let fixed = scalars.iter().all(|e| self.instance.variability(*e) <= Variability::Parameter);
-        if !inside && fixed && !matches!(value.element_type(), Some(Type::Real) | None) {
+        if !inside && fixed && !matches!(value.element_type(), Some(ScalarType::Real) | None) {
             value = self.constant(range, view)?;
         }
         match &value {
-            Val::Array { dims, .. } if dims.len() == 1 => (0..dims[0]).map(|i| value.slice(i)).collect(),
+            ModelicaValue::Array { dims, .. } if dims.len() == 1 => (0..dims[0]).map(|i| value.slice(i)).collect(),
             _ => self.wrong_type("a range or vector", &value, range.span),
         }
     }
 
     pub(in crate::instance) fn deduced_range(
         &mut self,
-        iterator: &'a bramah_syntax::ast::Iterator,
-        body: Body<'a>,
-        view: View,
-    ) -> Option<Vec<Val>> {
+        iterator: &'a bramah_syntax::ast::ForIndex,
+        body: LoopBody<'a>,
+        view: LookupContext,
+    ) -> Option<Vec<ModelicaValue>> {
         let name = iterator.name.name;
         match self.deduced_extent(name, body, view) {
-            Some(Extent { by: Type::Boolean, .. }) => Some(self.truth_values()),
-            Some(Extent { size, by }) => {
-                Some((1..=size).map(|i| Val::Scalar(self.instance.exprs.num(i as f64), by)).collect())
+            Some(ArrayExtent { by: ScalarType::Boolean, .. }) => Some(self.truth_values()),
+            Some(ArrayExtent { size, by }) => {
+                Some((1..=size).map(|i| ModelicaValue::Scalar(self.instance.exprs.num(i as f64), by)).collect())
             }
             None => {
                 self.instance.report(
@@ -163,12 +173,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
 
     pub(in crate::instance) fn comprehension(
         &mut self,
-        function: Option<&'a bramah_syntax::ast::Reference>,
+        function: Option<&'a bramah_syntax::ast::ComponentReference>,
         body: &'a Expr,
-        iterators: &'a [bramah_syntax::ast::Iterator],
-        view: View,
+        iterators: &'a [bramah_syntax::ast::ForIndex],
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         match function {
             None => self.array_comprehension(body, iterators, view, span),
             Some(f) => {
@@ -183,20 +193,20 @@ impl<'a> Evaluator<'_, 'a, '_> {
     pub(in crate::instance) fn array_comprehension(
         &mut self,
         body: &'a Expr,
-        iterators: &'a [bramah_syntax::ast::Iterator],
-        view: View,
+        iterators: &'a [bramah_syntax::ast::ForIndex],
+        view: LookupContext,
         span: Span,
-    ) -> Option<Val> {
+    ) -> Option<ModelicaValue> {
         let Some((last, rest)) = iterators.split_last() else { return self.eval(body, view) };
         let mut items = Vec::new();
-        for value in self.iterate(last, Body::Expr(body), view)? {
+        for value in self.iterate(last, LoopBody::Expr(body), view)? {
             self.instance.eval.locals.push((last.name.name, value));
             let item = self.array_comprehension(body, rest, view, span);
             self.instance.eval.locals.pop();
             items.push(item?);
         }
         if items.is_empty() {
-            return Some(Val::array(vec![0; iterators.len()], Vec::new()));
+            return Some(ModelicaValue::array(vec![0; iterators.len()], Vec::new()));
         }
         self.stacked(items, span)
     }
@@ -204,15 +214,15 @@ impl<'a> Evaluator<'_, 'a, '_> {
     pub(in crate::instance) fn each_element(
         &mut self,
         body: &'a Expr,
-        iterators: &'a [bramah_syntax::ast::Iterator],
-        view: View,
-        out: &mut Vec<Val>,
+        iterators: &'a [bramah_syntax::ast::ForIndex],
+        view: LookupContext,
+        out: &mut Vec<ModelicaValue>,
     ) -> Option<()> {
         let Some((first, rest)) = iterators.split_first() else {
             out.push(self.eval(body, view)?);
             return Some(());
         };
-        for value in self.iterate(first, Body::Expr(body), view)? {
+        for value in self.iterate(first, LoopBody::Expr(body), view)? {
             self.instance.eval.locals.push((first.name.name, value));
             let done = self.each_element(body, rest, view, out);
             self.instance.eval.locals.pop();
@@ -224,9 +234,9 @@ impl<'a> Evaluator<'_, 'a, '_> {
 
 /// One dimension of an array.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::instance) struct Extent {
+pub(in crate::instance) struct ArrayExtent {
     /// How many elements.
     pub size: usize,
     /// What counts: Integers, truth values or the literals of an enumeration.
-    pub by: Type,
+    pub by: ScalarType,
 }

@@ -1,33 +1,37 @@
 //! Component references: `a.b[i].c` to the variables it means.
 
 use crate::instance::errors::{list_names, nearest, short};
-use crate::instance::evaluation::indices::Pick;
-use crate::instance::lookup::{Builtin, Found};
-use crate::instance::template::Kind;
-use crate::instance::value::Val;
-use crate::instance::{ElementState, Evaluator, Node, NodeId, ScopeId, View};
-use bramah_expr::types::{Type, Variability};
-use bramah_syntax::ast::{ClassKind, Reference, ReferencePart, Subscript};
+use crate::instance::evaluation::indices::SubscriptValue;
+use crate::instance::lookup::{BuiltinType, LookupResult};
+use crate::instance::template::TemplateElementKind;
+use crate::instance::value::ModelicaValue;
+use crate::instance::{ElementState, Evaluator, InstanceNode, LookupContext, NodeId, ScopeId};
+use bramah_expr::types::{ScalarType, Variability};
+use bramah_syntax::ast::{ClassKind, ComponentReference, ReferencePart, Subscript};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
 /// Components picked by a reference: with dimensions when arrays are passed through.
 #[derive(Clone, Debug)]
-pub struct Selection {
+pub struct NodeSelection {
     /// Sizes of the arrays passed through.
     pub dims: Vec<usize>,
     /// How many of the sizes, counted from the last, belong to the component named last.
     pub own: usize,
     /// What counts along these.
-    pub by: Rc<[Type]>,
+    pub by: Rc<[ScalarType]>,
     /// The components, row-major; shared, for a reference to one element of a long array passes through the whole.
     pub nodes: Rc<[NodeId]>,
 }
 
 impl<'a> Evaluator<'_, 'a, '_> {
     /// The value of a reference.
-    pub(in crate::instance) fn reference(&mut self, r: &'a Reference, view: View) -> Option<Val> {
+    pub(in crate::instance) fn reference(
+        &mut self,
+        r: &'a ComponentReference,
+        view: LookupContext,
+    ) -> Option<ModelicaValue> {
         let first = &r.parts[0];
         if !r.global {
             if let Some(i) = self.instance.local(first.name.name)
@@ -41,24 +45,29 @@ impl<'a> Evaluator<'_, 'a, '_> {
             }
         }
         match self.start(r, view)? {
-            Found::Component(scope, index) => {
+            LookupResult::Component(scope, index) => {
                 let node = self.element_node(scope, index, r)?;
                 self.select_value(node, r, 0, view)
             }
-            Found::Class(class) => self.class_value(Found::Class(class), r, view),
-            Found::Builtin(b) => self.class_value(Found::Builtin(b), r, view),
+            LookupResult::Class(class) => self.class_value(LookupResult::Class(class), r, view),
+            LookupResult::Builtin(b) => self.class_value(LookupResult::Builtin(b), r, view),
         }
     }
 
-    fn time(&mut self, span: Span) -> Option<Val> {
+    fn time(&mut self, span: Span) -> Option<ModelicaValue> {
         if self.instance.eval.mode.constant {
             return self.instance.fail(Code::NotConstant, "`time` is not known before the run", span);
         }
-        Some(Val::Scalar(self.instance.exprs.time(), Type::Real))
+        Some(ModelicaValue::Scalar(self.instance.exprs.time(), ScalarType::Real))
     }
 
     /// Fields and indices of a local.
-    fn local_part(&mut self, mut value: Val, r: &'a Reference, view: View) -> Option<Val> {
+    fn local_part(
+        &mut self,
+        mut value: ModelicaValue,
+        r: &'a ComponentReference,
+        view: LookupContext,
+    ) -> Option<ModelicaValue> {
         let first = &r.parts[0];
         if !first.subscripts.is_empty() {
             let by = self.counted_by(view, first.name.name);
@@ -72,23 +81,32 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// What counts along the dimensions with which a local of a function, or of an algorithm section, was declared.
-    pub(in crate::instance) fn counted_by(&mut self, view: View, name: Symbol) -> Vec<Type> {
-        let Some(Found::Component(scope, index)) = self.instance.names().lookup(view, name) else { return Vec::new() };
+    pub(in crate::instance) fn counted_by(&mut self, view: LookupContext, name: Symbol) -> Vec<ScalarType> {
+        let Some(LookupResult::Component(scope, index)) = self.instance.names().lookup(view, name) else {
+            return Vec::new();
+        };
         let template = self.instance.scope(scope).template.clone();
         let element = &template.elements[index as usize];
-        let Kind::Component(declared) = element.kind else { return Vec::new() };
-        let own = View { scope, base: element.base };
+        let TemplateElementKind::Component(declared) = element.kind else { return Vec::new() };
+        let own = LookupContext { scope, base: element.base };
         let by = |s: &'a Subscript| match s {
-            Subscript::Expr(e) => self.enumeration_range(e, own).and_then(|v| v.first().and_then(Val::element_type)),
+            Subscript::Expr(e) => {
+                self.enumeration_range(e, own).and_then(|v| v.first().and_then(ModelicaValue::element_type))
+            }
             Subscript::All(_) => None,
         };
-        declared.subscripts.iter().map(by).map(|by| by.unwrap_or(Type::Integer)).collect()
+        declared.subscripts.iter().map(by).map(|by| by.unwrap_or(ScalarType::Integer)).collect()
     }
 
     /// A field of a record, or of every record of an array.
-    pub(in crate::instance) fn field(&mut self, value: &Val, name: Symbol, span: Span) -> Option<Val> {
+    pub(in crate::instance) fn field(
+        &mut self,
+        value: &ModelicaValue,
+        name: Symbol,
+        span: Span,
+    ) -> Option<ModelicaValue> {
         match value {
-            Val::Record(record) => match record.fields.iter().find(|(n, _)| *n == name) {
+            ModelicaValue::Record(record) => match record.fields.iter().find(|(n, _)| *n == name) {
                 Some((_, v)) => Some(v.clone()),
                 None => {
                     let names: Vec<Symbol> = record.fields.iter().map(|(n, _)| *n).collect();
@@ -96,19 +114,19 @@ impl<'a> Evaluator<'_, 'a, '_> {
                     None
                 }
             },
-            Val::Array { dims, elements } => {
-                let parts: Option<Vec<Val>> = elements.iter().map(|v| self.field(v, name, span)).collect();
+            ModelicaValue::Array { dims, elements } => {
+                let parts: Option<Vec<ModelicaValue>> = elements.iter().map(|v| self.field(v, name, span)).collect();
                 let parts = parts?;
                 let inner = parts.first().map_or(Vec::new(), |v| v.dims().to_vec());
-                let all: Vec<Val> = parts.iter().flat_map(|v| v.elements().to_vec()).collect();
-                Some(Val::array(dims.iter().copied().chain(inner).collect(), all))
+                let all: Vec<ModelicaValue> = parts.iter().flat_map(|v| v.elements().to_vec()).collect();
+                Some(ModelicaValue::array(dims.iter().copied().chain(inner).collect(), all))
             }
             _ => self.instance.fail(Code::UnknownName, &format!("{} has no field `{name}`", value.describe()), span),
         }
     }
 
     /// What the first part of a reference means, or a message.
-    fn start(&mut self, r: &Reference, view: View) -> Option<Found<'a>> {
+    fn start(&mut self, r: &ComponentReference, view: LookupContext) -> Option<LookupResult<'a>> {
         let name = r.parts[0].name;
         let found = if r.global {
             self.instance.names().lookup(crate::instance::ROOT, name.name)
@@ -119,7 +137,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             let names = self.visible_names(view);
             self.unknown_name(name.name, name.span, &names);
         }
-        if let Some(Found::Component(scope, index)) = found
+        if let Some(LookupResult::Component(scope, index)) = found
             && !r.global
             && self.is_variable_around(view, scope, index)
         {
@@ -139,7 +157,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
     /// Whether a component found around a class is a variable of an instance, which only constants may be (MLS 5.3.1).
     ///
     /// A function called through a component, as in `oil.density(p)`, reads what that holds; no other function is found there.
-    fn is_variable_around(&self, mut view: View, scope: ScopeId, index: u32) -> bool {
+    fn is_variable_around(&self, mut view: LookupContext, scope: ScopeId, index: u32) -> bool {
         // the modifiers of a short class stand around it
         while let Some(base) =
             self.instance.scope(view.scope).template.bases.get(view.base as usize).filter(|b| b.short)
@@ -151,11 +169,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
             return false;
         }
         match found.template.elements[index as usize].kind {
-            Kind::Component(c) => {
-                let constant = Some(bramah_syntax::ast::Variability::Constant);
+            TemplateElementKind::Component(c) => {
+                let constant = Some(bramah_syntax::ast::VariabilityPrefix::Constant);
                 c.prefix.variability != constant && found.prefix.variability != constant
             }
-            Kind::Class(_) => false,
+            TemplateElementKind::Class(_) => false,
         }
     }
 
@@ -169,7 +187,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.report(d);
     }
 
-    pub(in crate::instance) fn visible_names(&self, view: View) -> Vec<Symbol> {
+    pub(in crate::instance) fn visible_names(&self, view: LookupContext) -> Vec<Symbol> {
         let frame = self.instance.eval.frame;
         let mut names: Vec<Symbol> = self.instance.eval.locals[frame..].iter().map(|(n, _)| *n).collect();
         names.extend(self.instance.scope(view.scope).template.elements.iter().map(|e| e.name));
@@ -177,7 +195,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// The node of an element, with a message when it is absent.
-    fn element_node(&mut self, scope: ScopeId, index: u32, r: &Reference) -> Option<NodeId> {
+    fn element_node(&mut self, scope: ScopeId, index: u32, r: &ComponentReference) -> Option<NodeId> {
         let busy = matches!(self.instance.scope(scope).elements[index as usize], ElementState::Busy);
         if let Some(node) = self.instance.builder().component(scope, index) {
             return Some(node);
@@ -199,27 +217,33 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// A node as a selection.
-    pub fn selection(&self, node: NodeId) -> Selection {
+    pub fn selection(&self, node: NodeId) -> NodeSelection {
         match self.instance.node(node) {
-            Node::Array { dims, by, elements } => {
-                Selection { dims: dims.clone(), own: dims.len(), by: by.clone(), nodes: elements.clone() }
+            InstanceNode::Array { dims, by, elements } => {
+                NodeSelection { dims: dims.clone(), own: dims.len(), by: by.clone(), nodes: elements.clone() }
             }
-            _ => Selection { dims: Vec::new(), own: 0, by: Rc::from([]), nodes: Rc::from([node]) },
+            _ => NodeSelection { dims: Vec::new(), own: 0, by: Rc::from([]), nodes: Rc::from([node]) },
         }
     }
 
     /// Follows a reference from a component; `part` is the part that named it.
-    fn select_value(&mut self, node: NodeId, r: &'a Reference, part: usize, view: View) -> Option<Val> {
+    fn select_value(
+        &mut self,
+        node: NodeId,
+        r: &'a ComponentReference,
+        part: usize,
+        view: LookupContext,
+    ) -> Option<ModelicaValue> {
         let mut at = self.selection(node);
         for (i, p) in r.parts.iter().enumerate().skip(part) {
             if i > part {
                 match self.descend(&at, p) {
-                    Descent::Nodes(next) => at = next,
-                    Descent::Class(found) => {
-                        let rest = Reference { global: false, parts: r.parts[i..].to_vec(), span: r.span };
+                    ReferenceTarget::Nodes(next) => at = next,
+                    ReferenceTarget::Class(found) => {
+                        let rest = ComponentReference { global: false, parts: r.parts[i..].to_vec(), span: r.span };
                         return self.class_tail(found, &rest, view);
                     }
-                    Descent::Failed => return None,
+                    ReferenceTarget::Failed => return None,
                 }
             }
             if !p.subscripts.is_empty() {
@@ -233,7 +257,13 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.selection_value(&at, r.span)
     }
 
-    fn dynamic_selection(&mut self, at: &Selection, r: &'a Reference, part: usize, view: View) -> Option<Val> {
+    fn dynamic_selection(
+        &mut self,
+        at: &NodeSelection,
+        r: &'a ComponentReference,
+        part: usize,
+        view: LookupContext,
+    ) -> Option<ModelicaValue> {
         let mut value = self.selection_value(at, r.span)?;
         value = self.subscript_by(value, &r.parts[part].subscripts, &at.by, view, r.span)?;
         for p in &r.parts[part + 1..] {
@@ -245,11 +275,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
 
     pub(in crate::instance) fn subscript_selection(
         &mut self,
-        at: &Selection,
+        at: &NodeSelection,
         p: &'a ReferencePart,
-        view: View,
+        view: LookupContext,
         span: Span,
-    ) -> Option<Result<Selection, ()>> {
+    ) -> Option<Result<NodeSelection, ()>> {
         if p.subscripts.len() > at.own {
             let message = if at.own == 0 {
                 format!("`{}` is not an array", p.name.name)
@@ -260,46 +290,47 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
         // Indices belong to the component just named: the last dimensions came with it.
         let own = at.dims.len() - at.own;
-        let mut picks: Vec<Pick> = at.dims[..own].iter().map(|&n| Pick::Many((0..n).collect())).collect();
+        let mut picks: Vec<SubscriptValue> =
+            at.dims[..own].iter().map(|&n| SubscriptValue::Many((0..n).collect())).collect();
         for ((s, &size), &by) in p.subscripts.iter().zip(&at.dims[own..]).zip(&*at.by) {
             match self.index(s, (size, Some(by)), view, span)? {
-                Pick::Symbolic(_) => return Some(Err(())),
+                SubscriptValue::Symbolic(_) => return Some(Err(())),
                 known => picks.push(known),
             }
         }
-        picks.extend(at.dims[picks.len()..].iter().map(|&n| Pick::Many((0..n).collect())));
+        picks.extend(at.dims[picks.len()..].iter().map(|&n| SubscriptValue::Many((0..n).collect())));
         let (dims, places) = crate::instance::evaluation::indices::places(&at.dims, &picks);
         let nodes = places.into_iter().map(|i| at.nodes[i]).collect();
-        Some(Ok(Selection { dims, own: 0, by: Rc::from([]), nodes }))
+        Some(Ok(NodeSelection { dims, own: 0, by: Rc::from([]), nodes }))
     }
 
     /// One step down: a component or class inside the selected components.
-    pub(in crate::instance) fn descend(&mut self, at: &Selection, p: &ReferencePart) -> Descent<'a> {
+    pub(in crate::instance) fn descend(&mut self, at: &NodeSelection, p: &ReferencePart) -> ReferenceTarget<'a> {
         let name = p.name.name;
         let mut nodes = Vec::new();
-        let mut inner: Option<(Vec<usize>, Rc<[Type]>)> = None;
+        let mut inner: Option<(Vec<usize>, Rc<[ScalarType]>)> = None;
         for &node in &*at.nodes {
-            let Node::Object(scope) = *self.instance.node(node) else {
+            let InstanceNode::Object(scope) = *self.instance.node(node) else {
                 let whole = self.instance.node_name(node);
                 self.instance.report(
                     Diagnostic::new(Code::UnknownName, format!("`{whole}` has no element `{}`", short(name.as_str())))
                         .at(p.name.span, "it is a simple variable"),
                 );
-                return Descent::Failed;
+                return ReferenceTarget::Failed;
             };
             let template = self.instance.scope(scope).template.clone();
             let Some(&i) = template.by_name.get(&name) else {
                 self.unknown_member(scope, name, p.name.span);
-                return Descent::Failed;
+                return ReferenceTarget::Failed;
             };
             if template.elements[i as usize].protected {
                 self.protected_element(scope, name, p.name.span);
             }
-            if matches!(template.elements[i as usize].kind, Kind::Class(_)) {
-                let owner = View { scope, base: 0 };
+            if matches!(template.elements[i as usize].kind, TemplateElementKind::Class(_)) {
+                let owner = LookupContext { scope, base: 0 };
                 return match self.instance.names().lookup(owner, name) {
-                    Some(found) => Descent::Class(found),
-                    None => Descent::Failed,
+                    Some(found) => ReferenceTarget::Class(found),
+                    None => ReferenceTarget::Failed,
                 };
             }
             let child = match self.instance.builder().component(scope, i) {
@@ -315,7 +346,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                             .at(p.name.span, "its condition is false"),
                         );
                     }
-                    return Descent::Failed;
+                    return ReferenceTarget::Failed;
                 }
             };
             let chosen = self.selection(child);
@@ -325,7 +356,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                     "the elements of this array have parts of different sizes",
                     p.name.span,
                 );
-                return Descent::Failed;
+                return ReferenceTarget::Failed;
             }
             inner = Some((chosen.dims, chosen.by));
             nodes.extend_from_slice(&chosen.nodes);
@@ -333,7 +364,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         let (inner, by) = inner.unwrap_or_else(|| (Vec::new(), Rc::from([])));
         let own = inner.len();
         let dims = at.dims.iter().copied().chain(inner).collect();
-        Descent::Nodes(Selection { dims, own, by, nodes: nodes.into() })
+        ReferenceTarget::Nodes(NodeSelection { dims, own, by, nodes: nodes.into() })
     }
 
     fn protected_element(&mut self, scope: ScopeId, name: Symbol, span: Span) {
@@ -366,7 +397,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// The value of a class reference: a constant of a package, a literal of an enumeration.
-    fn class_value(&mut self, mut found: Found<'a>, r: &'a Reference, view: View) -> Option<Val> {
+    fn class_value(
+        &mut self,
+        mut found: LookupResult<'a>,
+        r: &'a ComponentReference,
+        view: LookupContext,
+    ) -> Option<ModelicaValue> {
         for (i, part) in r.parts.iter().enumerate().skip(1) {
             if let Some(v) = self.literal(&found, part.name.name) {
                 return Some(v);
@@ -376,8 +412,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 self.instance.names().check_member(&found, inside, part.name);
             }
             match inside {
-                Some(Found::Component(scope, index)) => {
-                    if let Found::Class(c) = &found
+                Some(LookupResult::Component(scope, index)) => {
+                    if let LookupResult::Class(c) = &found
                         && self.instance.library.class(c.class).prefixes.partial
                     {
                         let name = self.instance.library.full_name(c.class);
@@ -399,7 +435,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 }
             }
         }
-        if let Found::Class(class) = &found
+        if let LookupResult::Class(class) = &found
             && let Some(function) = self.instance.calls().function_value(class, Vec::new())
         {
             return Some(function);
@@ -408,13 +444,18 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// The rest of a reference that reached a class inside a component.
-    fn class_tail(&mut self, mut found: Found<'a>, r: &Reference, _view: View) -> Option<Val> {
+    fn class_tail(
+        &mut self,
+        mut found: LookupResult<'a>,
+        r: &ComponentReference,
+        _view: LookupContext,
+    ) -> Option<ModelicaValue> {
         for part in &r.parts[1..] {
             if let Some(v) = self.literal(&found, part.name.name) {
                 return Some(v);
             }
             match self.instance.names().member(&found, part.name.name)? {
-                Found::Component(scope, index) => {
+                LookupResult::Component(scope, index) => {
                     let node = self.element_node(scope, index, r)?;
                     let at = self.selection(node);
                     return self
@@ -427,35 +468,35 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
     }
 
-    fn literal(&mut self, found: &Found<'a>, name: Symbol) -> Option<Val> {
+    fn literal(&mut self, found: &LookupResult<'a>, name: Symbol) -> Option<ModelicaValue> {
         let builtin = match found {
-            Found::Builtin(b) => *b,
-            Found::Class(c) => self.instance.names().template(c.class, c.parent).builtin?,
-            Found::Component(..) => return None,
+            LookupResult::Builtin(b) => *b,
+            LookupResult::Class(c) => self.instance.names().template(c.class, c.parent).builtin?,
+            LookupResult::Component(..) => return None,
         };
-        let Builtin::Enumeration(i) = builtin else { return None };
+        let BuiltinType::Enumeration(i) = builtin else { return None };
         let k = self.instance.enumerations[i as usize].literals.iter().position(|l| *l == name)?;
-        Some(Val::Scalar(self.instance.exprs.num(k as f64 + 1.0), Type::Enumeration(i)))
+        Some(ModelicaValue::Scalar(self.instance.exprs.num(k as f64 + 1.0), ScalarType::Enumeration(i)))
     }
 
-    fn unknown_in_class(&mut self, found: &Found<'a>, part: &ReferencePart) {
+    fn unknown_in_class(&mut self, found: &LookupResult<'a>, part: &ReferencePart) {
         let (class, mut names) = match found {
-            Found::Class(c) => {
+            LookupResult::Class(c) => {
                 let t = self.instance.names().template(c.class, c.parent);
                 let literals = match t.builtin {
-                    Some(Builtin::Enumeration(i)) => self.instance.enumerations[i as usize].literals.clone(),
+                    Some(BuiltinType::Enumeration(i)) => self.instance.enumerations[i as usize].literals.clone(),
                     _ => Vec::new(),
                 };
                 let names: Vec<Symbol> = t.elements.iter().map(|e| e.name).chain(literals).collect();
                 (self.instance.library.full_name(c.class), names)
             }
-            Found::Builtin(Builtin::Enumeration(i)) => {
+            LookupResult::Builtin(BuiltinType::Enumeration(i)) => {
                 let e = &self.instance.enumerations[*i as usize];
                 (e.name.clone(), e.literals.clone())
             }
             _ => ("this type".into(), Vec::new()),
         };
-        if let Found::Class(c) = found {
+        if let LookupResult::Class(c) = found {
             names.extend(self.instance.library.folder_members(c.class));
         }
         let name = part.name.name;
@@ -469,28 +510,28 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// The value of selected components.
-    pub(in crate::instance) fn selection_value(&mut self, at: &Selection, span: Span) -> Option<Val> {
-        let values: Option<Vec<Val>> = at.nodes.iter().map(|&n| self.node_value(n, span)).collect();
+    pub(in crate::instance) fn selection_value(&mut self, at: &NodeSelection, span: Span) -> Option<ModelicaValue> {
+        let values: Option<Vec<ModelicaValue>> = at.nodes.iter().map(|&n| self.node_value(n, span)).collect();
         let mut values = values?;
         if at.dims.is_empty() {
             return values.pop();
         }
-        Some(Val::array(at.dims.clone(), values))
+        Some(ModelicaValue::array(at.dims.clone(), values))
     }
 
     /// The value of a component: a variable, or a record.
-    pub fn node_value(&mut self, node: NodeId, span: Span) -> Option<Val> {
+    pub fn node_value(&mut self, node: NodeId, span: Span) -> Option<ModelicaValue> {
         match self.instance.node(node) {
-            Node::Var(i) => self.variable_value(*i, span),
-            Node::Array { .. } => {
+            InstanceNode::Var(i) => self.variable_value(*i, span),
+            InstanceNode::Array { .. } => {
                 let at = self.selection(node);
                 self.selection_value(&at, span)
             }
-            Node::Object(scope) => self.record_value(*scope, span),
+            InstanceNode::Object(scope) => self.record_value(*scope, span),
         }
     }
 
-    fn record_value(&mut self, scope: ScopeId, span: Span) -> Option<Val> {
+    fn record_value(&mut self, scope: ScopeId, span: Span) -> Option<ModelicaValue> {
         let template = self.instance.scope(scope).template.clone();
         if !matches!(template.kind, ClassKind::Record { .. } | ClassKind::Connector { .. }) {
             let name = self.instance.scope(scope).name.clone();
@@ -504,18 +545,18 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
         let mut fields = Vec::new();
         for (i, element) in (0u32..).zip(&template.elements) {
-            if matches!(element.kind, Kind::Component(_))
+            if matches!(element.kind, TemplateElementKind::Component(_))
                 && let Some(node) = self.instance.builder().component(scope, i)
             {
                 fields.push((element.name, self.node_value(node, span)?));
             }
         }
         let class = self.instance.operators().operator_class_of(&template);
-        Some(Val::Record(Rc::new(crate::instance::value::Record { fields, class })))
+        Some(ModelicaValue::Record(Rc::new(crate::instance::value::RecordValue { fields, class })))
     }
 
     /// The value of a scalar variable: itself, or its number where values count.
-    fn variable_value(&mut self, i: u32, span: Span) -> Option<Val> {
+    fn variable_value(&mut self, i: u32, span: Span) -> Option<ModelicaValue> {
         let data = &self.instance.variables[i as usize];
         // Constants of packages are not part of the model, so only their value can stand in it.
         let by_value = data.string
@@ -544,15 +585,15 @@ impl<'a> Evaluator<'_, 'a, '_> {
             self.instance.report(d.note("Modelica 3.6, 4.6").help("declare it `constant`, or in the model"));
             return None;
         }
-        Some(Val::Scalar(self.instance.exprs.var(id), ty))
+        Some(ModelicaValue::Scalar(self.instance.exprs.var(id), ty))
     }
 }
 
 /// Whether a reference names a variable of a component that is no value, of which an algorithm section assigns other ones.
-fn lies_beside(mut value: &Val, r: &Reference) -> bool {
+fn lies_beside(mut value: &ModelicaValue, r: &ComponentReference) -> bool {
     for part in &r.parts[1..] {
         value = value.elements().first().unwrap_or(value);
-        let Val::Record(record) = value else { return false };
+        let ModelicaValue::Record(record) = value else { return false };
         match record.fields.iter().find(|(name, _)| *name == part.name.name) {
             Some((_, field)) => value = field,
             None => return true,
@@ -561,8 +602,8 @@ fn lies_beside(mut value: &Val, r: &Reference) -> bool {
     false
 }
 
-pub(in crate::instance) enum Descent<'a> {
-    Nodes(Selection),
-    Class(Found<'a>),
+pub(in crate::instance) enum ReferenceTarget<'a> {
+    Nodes(NodeSelection),
+    Class(LookupResult<'a>),
     Failed,
 }

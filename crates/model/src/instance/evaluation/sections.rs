@@ -1,12 +1,14 @@
 //! Doors for `flat`, which walks the equations and algorithm sections.
 
 use crate::instance::algorithm::{AlgorithmCall, AlgorithmWhen};
-use crate::instance::deduce::Body;
-use crate::instance::evaluation::state::Work;
-use crate::instance::lookup::Found;
-use crate::instance::value::{Record, Val};
-use crate::instance::{Instance, Node, NodeId, Statements, View};
-use bramah_syntax::ast::{ClassKind, Equation, Expr, Iterator as LoopIterator, Reference, ReferencePart, Statement};
+use crate::instance::deduce::LoopBody;
+use crate::instance::evaluation::state::StatementBudget;
+use crate::instance::lookup::LookupResult;
+use crate::instance::value::{ModelicaValue, RecordValue};
+use crate::instance::{Instance, InstanceNode, LookupContext, NodeId, Statements};
+use bramah_syntax::ast::{
+    ClassKind, ComponentReference, Equation, Expr, ForIndex as LoopIterator, ReferencePart, Statement,
+};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
@@ -15,8 +17,8 @@ impl<'a> Statements<'_, 'a, '_> {
     pub fn for_each(
         &mut self,
         iterators: &'a [LoopIterator],
-        repeated: Body<'a>,
-        view: View,
+        repeated: LoopBody<'a>,
+        view: LookupContext,
         body: &mut dyn FnMut(&mut Instance<'a, '_>),
     ) {
         let Some((first, rest)) = iterators.split_first() else { return body(self.instance) };
@@ -29,12 +31,17 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// The values of a loop variable.
-    pub fn loop_values(&mut self, iterator: &'a LoopIterator, body: &'a [Equation], view: View) -> Option<Vec<Val>> {
-        self.instance.evaluator().iterate(iterator, Body::Equations(body), view)
+    pub fn loop_values(
+        &mut self,
+        iterator: &'a LoopIterator,
+        body: &'a [Equation],
+        view: LookupContext,
+    ) -> Option<Vec<ModelicaValue>> {
+        self.instance.evaluator().iterate(iterator, LoopBody::Equations(body), view)
     }
 
     /// Enters a loop variable.
-    pub fn push_local(&mut self, name: Symbol, value: Val) {
+    pub fn push_local(&mut self, name: Symbol, value: ModelicaValue) {
         self.instance.eval.locals.push((name, value));
     }
 
@@ -49,10 +56,10 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// The value of an element of which an algorithm section assigns these parts; of a component that is no value only these.
-    pub fn assigned_value(&mut self, view: View, targets: &[&'a Reference]) -> Option<Val> {
+    pub fn assigned_value(&mut self, view: LookupContext, targets: &[&'a ComponentReference]) -> Option<ModelicaValue> {
         let first = &targets.first()?.parts[0];
         match self.instance.names().lookup(view, first.name.name) {
-            Some(Found::Component(scope, index)) => {
+            Some(LookupResult::Component(scope, index)) => {
                 let node = self.instance.builder().component(scope, index)?;
                 let parts: Vec<&'a [ReferencePart]> = targets.iter().map(|r| &r.parts[1..]).collect();
                 self.assigned_parts(node, &parts, first)
@@ -66,16 +73,21 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// What these references, which begin below it, name of a node.
-    fn assigned_parts(&mut self, node: NodeId, targets: &[&'a [ReferencePart]], named: &ReferencePart) -> Option<Val> {
+    fn assigned_parts(
+        &mut self,
+        node: NodeId,
+        targets: &[&'a [ReferencePart]],
+        named: &ReferencePart,
+    ) -> Option<ModelicaValue> {
         let scope = match self.instance.node(node) {
-            Node::Object(scope) => *scope,
-            Node::Array { dims, elements, .. }
-                if matches!(self.instance.node(elements.first().copied()?), Node::Object(_)) =>
+            InstanceNode::Object(scope) => *scope,
+            InstanceNode::Array { dims, elements, .. }
+                if matches!(self.instance.node(elements.first().copied()?), InstanceNode::Object(_)) =>
             {
                 let (dims, elements) = (dims.clone(), elements.clone());
-                let values: Option<Vec<Val>> =
+                let values: Option<Vec<ModelicaValue>> =
                     elements.iter().map(|&node| self.assigned_parts(node, targets, named)).collect();
-                return Some(Val::array(dims, values?));
+                return Some(ModelicaValue::array(dims, values?));
             }
             _ => return self.instance.evaluator().node_value(node, named.name.span),
         };
@@ -84,7 +96,7 @@ impl<'a> Statements<'_, 'a, '_> {
         if is_value || targets.iter().any(|parts| parts.is_empty()) {
             return self.instance.evaluator().node_value(node, named.name.span);
         }
-        let mut fields: Vec<(Symbol, Val)> = Vec::new();
+        let mut fields: Vec<(Symbol, ModelicaValue)> = Vec::new();
         for part in targets.iter().map(|parts| &parts[0]) {
             if fields.iter().any(|(name, _)| *name == part.name.name) {
                 continue;
@@ -99,12 +111,12 @@ impl<'a> Statements<'_, 'a, '_> {
             let below: Vec<&'a [ReferencePart]> = below.collect();
             fields.push((part.name.name, self.assigned_parts(node, &below, part)?));
         }
-        Some(Val::Record(Rc::new(Record { fields, class: None })))
+        Some(ModelicaValue::Record(Rc::new(RecordValue { fields, class: None })))
     }
 
     /// Carries out an algorithm section of the model on the `count` locals that were pushed for it.
-    pub fn run_section(&mut self, section: &'a [Statement], view: View, count: usize) -> Option<()> {
-        self.instance.eval.work = Work::allowed([MOST_SECTION_STEPS, MOST_SECTION_STEPS]);
+    pub fn run_section(&mut self, section: &'a [Statement], view: LookupContext, count: usize) -> Option<()> {
+        self.instance.eval.work = StatementBudget::allowed([MOST_SECTION_STEPS, MOST_SECTION_STEPS]);
         self.instance.eval.not_inline = false;
         let end = self.instance.eval.locals.len();
         self.instance.eval.section = end - count..end;
@@ -116,14 +128,14 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 
     /// Calls a function for what it asserts.
-    pub fn call_keeping_assertions(&mut self, call: &'a Expr, view: View) -> Vec<AlgorithmCall> {
+    pub fn call_keeping_assertions(&mut self, call: &'a Expr, view: LookupContext) -> Vec<AlgorithmCall> {
         self.instance.eval.calls.clear();
         self.instance.in_mode(|m| m.keep_asserts = true, |s| s.evaluator().eval_all(call, view));
         std::mem::take(&mut self.instance.eval.calls)
     }
 
     /// Removes the last locals and hands out their values.
-    pub fn take_locals(&mut self, count: usize) -> Vec<Val> {
+    pub fn take_locals(&mut self, count: usize) -> Vec<ModelicaValue> {
         let at = self.instance.eval.locals.len() - count;
         self.instance.eval.locals.split_off(at).into_iter().map(|(_, v)| v).collect()
     }

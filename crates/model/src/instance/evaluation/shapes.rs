@@ -1,27 +1,27 @@
 //! Sizes of expressions whose values may change.
 
-use crate::instance::evaluation::references::Descent;
-use crate::instance::lookup::Found;
-use crate::instance::{Evaluator, View};
+use crate::instance::evaluation::references::ReferenceTarget;
+use crate::instance::lookup::LookupResult;
+use crate::instance::{Evaluator, LookupContext};
 use bramah_syntax::ast::{Expr, ExprKind};
 
 impl<'a> Evaluator<'_, 'a, '_> {
     /// Sizes of what a reference to components of the model selects: they are known where the values are not. `None` where
     /// it is anything else.
-    pub(in crate::instance) fn declared_dims(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+    pub(in crate::instance) fn declared_dims(&mut self, e: &'a Expr, view: LookupContext) -> Option<Vec<usize>> {
         let ExprKind::Reference(r) = &e.kind else { return None };
         if !self.instance.eval.mode.constant || !r.global && self.instance.local(r.parts[0].name.name).is_some() {
             return None;
         }
         let from = if r.global { crate::instance::ROOT } else { view };
-        let Found::Component(scope, index) = self.instance.names().lookup(from, r.parts[0].name.name)? else {
+        let LookupResult::Component(scope, index) = self.instance.names().lookup(from, r.parts[0].name.name)? else {
             return None;
         };
         let node = self.instance.builder().component(scope, index)?;
         let mut at = self.selection(node);
         for (i, p) in r.parts.iter().enumerate() {
             if i > 0 {
-                let Descent::Nodes(next) = self.descend(&at, p) else { return None };
+                let ReferenceTarget::Nodes(next) = self.descend(&at, p) else { return None };
                 at = next;
             }
             if !p.subscripts.is_empty() {
@@ -32,11 +32,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 
     /// Sizes of an expression whose value may change, where its form tells them.
-    pub(in crate::instance) fn shape(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+    pub(in crate::instance) fn shape(&mut self, e: &'a Expr, view: LookupContext) -> Option<Vec<usize>> {
         self.instance.in_mode(|m| m.constant = true, |s| s.evaluator().shape_inside(e, view))
     }
 
-    pub(in crate::instance) fn shape_inside(&mut self, e: &'a Expr, view: View) -> Option<Vec<usize>> {
+    pub(in crate::instance) fn shape_inside(&mut self, e: &'a Expr, view: LookupContext) -> Option<Vec<usize>> {
         use bramah_syntax::ast::BinaryOp as B;
         match &e.kind {
             ExprKind::Reference(r) if r.parts.len() == 1 && r.parts[0].name.name == "time" => Some(Vec::new()),

@@ -1,24 +1,24 @@
 //! The mutable surroundings of an evaluation.
 
 use crate::instance::Instance;
-use crate::instance::value::Val;
+use crate::instance::value::ModelicaValue;
 use bramah_expr::ExprId;
-use bramah_expr::types::Type;
+use bramah_expr::types::ScalarType;
 use bramah_syntax::diag::FileId;
 use bramah_syntax::symbol::Symbol;
 use rustc_hash::FxHashMap;
 
 /// The mutable surroundings of an evaluation.
 #[derive(Default)]
-pub struct State {
+pub struct EvaluationState {
     /// Loop variables and the locals of functions, innermost last.
-    pub locals: Vec<(Symbol, Val)>,
+    pub locals: Vec<(Symbol, ModelicaValue)>,
     /// First local of the function being evaluated.
     pub frame: usize,
     /// How expressions are evaluated at present.
-    pub mode: Mode,
+    pub mode: EvaluationMode,
     /// Sizes that `end` means, and what counts along the dimension, innermost last.
-    pub ends: Vec<(usize, Type)>,
+    pub ends: Vec<(usize, ScalarType)>,
     /// Depth of function calls.
     pub depth: usize,
     /// Set when a function cannot be written as an expression and must become a procedure.
@@ -26,7 +26,7 @@ pub struct State {
     /// An assertion fails where the run may not come: the function around it must become a procedure.
     pub may_fail: bool,
     /// Statements carried out, to end what never ends.
-    pub work: Work,
+    pub work: StatementBudget,
     /// `when`s met in an algorithm section of the model.
     pub whens: Vec<crate::instance::algorithm::AlgorithmWhen>,
     /// `assert`s and `terminate`s met there since the section, or the branch of a `when`, began.
@@ -34,7 +34,7 @@ pub struct State {
     /// Conditions of the `if`s around the present statement of such a section.
     pub guards: Vec<ExprId>,
     /// The procedure being translated.
-    pub(in crate::instance) translation: crate::instance::procedure::Translation,
+    pub(in crate::instance) translation: crate::instance::procedure::ProcedureDraft,
     /// The variables of the algorithm section being carried out, among the locals.
     pub section: std::ops::Range<usize>,
     /// The text of values given from outside.
@@ -45,7 +45,7 @@ pub struct State {
 
 /// How expressions are evaluated; [`Instance::in_mode`] changes it for a while.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Mode {
+pub struct EvaluationMode {
     /// Parameters count by their values.
     pub constant: bool,
     /// Relations make no events.
@@ -62,7 +62,7 @@ pub struct Mode {
 
 impl Instance<'_, '_> {
     /// Does something in another mode.
-    pub fn in_mode<T>(&mut self, change: impl FnOnce(&mut Mode), act: impl FnOnce(&mut Self) -> T) -> T {
+    pub fn in_mode<T>(&mut self, change: impl FnOnce(&mut EvaluationMode), act: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.eval.mode;
         change(&mut self.eval.mode);
         let done = act(self);
@@ -91,7 +91,7 @@ impl Instance<'_, '_> {
 
 /// Statements carried out, against the most that are allowed.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Work {
+pub struct StatementBudget {
     /// The present function is called with known values only.
     pub known: bool,
     /// By functions that are written out, and by those that are simply carried out.
@@ -99,10 +99,10 @@ pub struct Work {
     most: [usize; 2],
 }
 
-impl Work {
+impl StatementBudget {
     /// A fresh allowance for what is written out and what is carried out.
     pub fn allowed(most: [usize; 2]) -> Self {
-        Work { known: false, done: [0; 2], most }
+        StatementBudget { known: false, done: [0; 2], most }
     }
 
     /// Counts a statement; false when there have been too many.

@@ -2,7 +2,7 @@
 //! flows of a connection set.
 
 use crate::instance::{StreamMember, StreamMixing};
-use bramah_expr::{Binary, ExprId, Exprs, Node, Rel};
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp};
 
 /// Weight in the mixture of what flows into a component that mixes, where nothing flows. Multiplied by the inflow the mixture
 /// must give what is brought in to the last digit, or energy would not be conserved.
@@ -32,7 +32,7 @@ impl StreamMixing<'_, '_, '_> {
 
     /// Notes what leaves through a port, if it is a number.
     pub fn leaves_with(&mut self, variable: u32, value: ExprId) {
-        if matches!(self.instance.exprs.node(value), Node::Num(_)) {
+        if matches!(self.instance.exprs.node(value), ExprNode::Num(_)) {
             self.instance.streams.constant.insert(variable, value);
         }
     }
@@ -51,7 +51,7 @@ impl StreamMixing<'_, '_, '_> {
         let junction = self.instance.streams.inside.get(&variable).and_then(|&set| self.instance.streams.junction(set));
         let Some(junction) = junction.filter(|junction| junction.mixer == variable) else {
             let flow = self.instance.exprs.var(self.instance.variables[flow as usize].id);
-            return self.instance.exprs.binary(Binary::Max, flow, Exprs::ZERO);
+            return self.instance.exprs.binary(BinaryFunction::Max, flow, Exprs::ZERO);
         };
         let others = junction.others.clone();
         let sent: Vec<ExprId> = others.iter().map(|m| self.sent(m)).collect();
@@ -90,7 +90,7 @@ impl StreamMixing<'_, '_, '_> {
     fn sent(&mut self, m: &StreamMember) -> ExprId {
         let flow = self.instance.exprs.var(self.instance.variables[m.flow as usize].id);
         let towards = if m.outside { flow } else { self.instance.exprs.neg(flow) };
-        self.instance.exprs.binary(Binary::Max, towards, Exprs::ZERO)
+        self.instance.exprs.binary(BinaryFunction::Max, towards, Exprs::ZERO)
     }
 
     fn total(&mut self, parts: impl IntoIterator<Item = ExprId>) -> ExprId {
@@ -103,8 +103,8 @@ impl StreamMixing<'_, '_, '_> {
         let (least, two) = (self.instance.exprs.num(least), self.instance.exprs.num(2.0));
         let over = self.instance.exprs.div(total, least);
         let short = self.instance.exprs.sub(Exprs::ONE, over);
-        let short = self.instance.exprs.binary(Binary::Max, short, Exprs::ZERO);
-        let power = self.instance.exprs.binary(Binary::Pow, short, two);
+        let short = self.instance.exprs.binary(BinaryFunction::Max, short, Exprs::ZERO);
+        let power = self.instance.exprs.binary(BinaryFunction::Pow, short, two);
         self.instance.exprs.mul(least, power)
     }
 
@@ -113,7 +113,7 @@ impl StreamMixing<'_, '_, '_> {
         let (inward, own) =
             (self.in_stream(variable), self.instance.exprs.var(self.instance.variables[variable as usize].id));
         let flow = self.instance.exprs.var(self.instance.variables[flow as usize].id);
-        let enters = self.instance.exprs.rel(Rel::Gt, flow, Exprs::ZERO);
+        let enters = self.instance.exprs.rel(RelationalOp::Gt, flow, Exprs::ZERO);
         self.instance.exprs.if_(enters, inward, own)
     }
 }

@@ -1,17 +1,17 @@
 //! What an expression of the language evaluates to: scalars over the pool, arrays, records, texts.
 
-use bramah_expr::types::{MessagePart, Type};
+use bramah_expr::types::{MessagePart, ScalarType};
 use bramah_expr::{ExprId, Exprs};
-use bramah_external::Object;
+use bramah_external::ExternalObject;
 use bramah_syntax::ast::Ident;
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
 /// A value.
 #[derive(Clone, Debug)]
-pub enum Val {
+pub enum ModelicaValue {
     /// A number, truth value or enumeration value, known or symbolic.
-    Scalar(ExprId, Type),
+    Scalar(ExprId, ScalarType),
     /// A text, possibly with values in it.
     Text(Rc<Vec<MessagePart>>),
     /// An array, row-major; elements are not arrays.
@@ -19,59 +19,59 @@ pub enum Val {
         /// Sizes.
         dims: Vec<usize>,
         /// Elements.
-        elements: Rc<Vec<Val>>,
+        elements: Rc<Vec<ModelicaValue>>,
     },
     /// A record.
-    Record(Rc<Record>),
+    Record(Rc<RecordValue>),
     /// Several outputs of a function.
-    Tuple(Rc<Vec<Val>>),
+    Tuple(Rc<Vec<ModelicaValue>>),
     /// What a constructor of an external object made.
-    Object(Object),
+    Object(ExternalObject),
     /// A function given as an argument: its number in the instance, and inputs that it was given already.
-    Function(u32, Rc<Vec<(Ident, Val)>>),
+    Function(u32, Rc<Vec<(Ident, ModelicaValue)>>),
 }
 
 /// A record: its fields, and the class of an operator record among those of the instance.
 #[derive(Clone, Debug)]
-pub struct Record {
+pub struct RecordValue {
     /// Names and values in the order of their declaration.
-    pub fields: Vec<(Symbol, Val)>,
+    pub fields: Vec<(Symbol, ModelicaValue)>,
     /// Number of its class, for an operator record.
     pub class: Option<u32>,
 }
 
-impl Val {
+impl ModelicaValue {
     /// A text without values.
-    pub fn text(words: impl Into<String>) -> Val {
-        Val::Text(Rc::new(vec![MessagePart::Text(words.into())]))
+    pub fn text(words: impl Into<String>) -> ModelicaValue {
+        ModelicaValue::Text(Rc::new(vec![MessagePart::Text(words.into())]))
     }
 
     /// An array.
-    pub fn array(dims: Vec<usize>, elements: Vec<Val>) -> Val {
+    pub fn array(dims: Vec<usize>, elements: Vec<ModelicaValue>) -> ModelicaValue {
         debug_assert_eq!(dims.iter().product::<usize>(), elements.len());
-        Val::Array { dims, elements: Rc::new(elements) }
+        ModelicaValue::Array { dims, elements: Rc::new(elements) }
     }
 
     /// Sizes; none for anything but arrays.
     pub fn dims(&self) -> &[usize] {
         match self {
-            Val::Array { dims, .. } => dims,
+            ModelicaValue::Array { dims, .. } => dims,
             _ => &[],
         }
     }
 
     /// The elements in row-major order; a scalar is its own only element.
-    pub fn elements(&self) -> &[Val] {
+    pub fn elements(&self) -> &[ModelicaValue] {
         match self {
-            Val::Array { elements, .. } => elements,
+            ModelicaValue::Array { elements, .. } => elements,
             other => std::slice::from_ref(other),
         }
     }
 
     /// The scalar expression and its type.
-    pub fn scalar(&self) -> Option<(ExprId, Type)> {
+    pub fn scalar(&self) -> Option<(ExprId, ScalarType)> {
         match self {
-            Val::Scalar(e, ty) => Some((*e, *ty)),
+            ModelicaValue::Scalar(e, ty) => Some((*e, *ty)),
             _ => None,
         }
     }
@@ -83,21 +83,21 @@ impl Val {
 
     /// The words, if it is a text without symbolic values.
     pub fn as_text(&self, exprs: &Exprs) -> Option<String> {
-        let Val::Text(parts) = self else { return None };
+        let ModelicaValue::Text(parts) = self else { return None };
         parts.iter().map(|part| words(part, exprs)).collect()
     }
 
     /// A text for messages, with `...` for values that are not known.
     pub fn in_words(&self, exprs: &Exprs) -> String {
-        let Val::Text(parts) = self else { return String::new() };
+        let ModelicaValue::Text(parts) = self else { return String::new() };
         parts.iter().map(|part| words(part, exprs).unwrap_or_else(|| "...".to_owned())).collect()
     }
 
     /// The type of the first scalar inside.
-    pub fn element_type(&self) -> Option<Type> {
+    pub fn element_type(&self) -> Option<ScalarType> {
         match self {
-            Val::Scalar(_, ty) => Some(*ty),
-            Val::Array { elements, .. } => elements.first().and_then(Val::element_type),
+            ModelicaValue::Scalar(_, ty) => Some(*ty),
+            ModelicaValue::Array { elements, .. } => elements.first().and_then(ModelicaValue::element_type),
             _ => None,
         }
     }
@@ -105,23 +105,23 @@ impl Val {
     /// A few words for messages: "a Real", "an array of size 3", "a record".
     pub fn describe(&self) -> String {
         match self {
-            Val::Scalar(_, Type::Real) => "a Real".into(),
-            Val::Scalar(_, Type::Integer) => "an Integer".into(),
-            Val::Scalar(_, Type::Boolean) => "a Boolean".into(),
-            Val::Scalar(_, Type::Enumeration(_)) => "an enumeration value".into(),
-            Val::Text(_) => "a String".into(),
-            Val::Array { dims, .. } => format!("an array of size {}", size_text(dims)),
-            Val::Record(_) => "a record".into(),
-            Val::Tuple(_) => "several values".into(),
-            Val::Object(_) => "an external object".into(),
-            Val::Function(..) => "a function".into(),
+            ModelicaValue::Scalar(_, ScalarType::Real) => "a Real".into(),
+            ModelicaValue::Scalar(_, ScalarType::Integer) => "an Integer".into(),
+            ModelicaValue::Scalar(_, ScalarType::Boolean) => "a Boolean".into(),
+            ModelicaValue::Scalar(_, ScalarType::Enumeration(_)) => "an enumeration value".into(),
+            ModelicaValue::Text(_) => "a String".into(),
+            ModelicaValue::Array { dims, .. } => format!("an array of size {}", size_text(dims)),
+            ModelicaValue::Record(_) => "a record".into(),
+            ModelicaValue::Tuple(_) => "several values".into(),
+            ModelicaValue::Object(_) => "an external object".into(),
+            ModelicaValue::Function(..) => "a function".into(),
         }
     }
 
     /// The value itself, or the first of several outputs.
-    pub fn first_output(&self) -> Val {
+    pub fn first_output(&self) -> ModelicaValue {
         match self {
-            Val::Tuple(values) => values.first().unwrap_or(self).clone(),
+            ModelicaValue::Tuple(values) => values.first().unwrap_or(self).clone(),
             other => other.clone(),
         }
     }
@@ -136,70 +136,79 @@ impl Val {
     /// All scalars inside, in order.
     pub fn scalars(&self, out: &mut Vec<ExprId>) {
         match self {
-            Val::Scalar(e, _) => out.push(*e),
-            Val::Array { elements, .. } => elements.iter().for_each(|v| v.scalars(out)),
-            Val::Record(record) => record.fields.iter().for_each(|(_, v)| v.scalars(out)),
-            Val::Tuple(values) => values.iter().for_each(|v| v.scalars(out)),
-            Val::Function(_, bound) => bound.iter().for_each(|(_, v)| v.scalars(out)),
-            Val::Text(_) | Val::Object(_) => {}
+            ModelicaValue::Scalar(e, _) => out.push(*e),
+            ModelicaValue::Array { elements, .. } => elements.iter().for_each(|v| v.scalars(out)),
+            ModelicaValue::Record(record) => record.fields.iter().for_each(|(_, v)| v.scalars(out)),
+            ModelicaValue::Tuple(values) => values.iter().for_each(|v| v.scalars(out)),
+            ModelicaValue::Function(_, bound) => bound.iter().for_each(|(_, v)| v.scalars(out)),
+            ModelicaValue::Text(_) | ModelicaValue::Object(_) => {}
         }
     }
 
     /// The same shape with other scalars.
-    pub fn map(&self, change: &mut impl FnMut(ExprId, Type) -> ExprId) -> Val {
+    pub fn map(&self, change: &mut impl FnMut(ExprId, ScalarType) -> ExprId) -> ModelicaValue {
         match self {
-            Val::Scalar(e, ty) => Val::Scalar(change(*e, *ty), *ty),
-            Val::Array { dims, elements } => {
-                Val::Array { dims: dims.clone(), elements: Rc::new(elements.iter().map(|v| v.map(change)).collect()) }
-            }
-            Val::Record(record) => {
+            ModelicaValue::Scalar(e, ty) => ModelicaValue::Scalar(change(*e, *ty), *ty),
+            ModelicaValue::Array { dims, elements } => ModelicaValue::Array {
+                dims: dims.clone(),
+                elements: Rc::new(elements.iter().map(|v| v.map(change)).collect()),
+            },
+            ModelicaValue::Record(record) => {
                 let fields = record.fields.iter().map(|(n, v)| (*n, v.map(change))).collect();
-                Val::Record(Rc::new(Record { fields, class: record.class }))
+                ModelicaValue::Record(Rc::new(RecordValue { fields, class: record.class }))
             }
-            Val::Tuple(values) => Val::Tuple(Rc::new(values.iter().map(|v| v.map(change)).collect())),
-            Val::Function(f, bound) => {
-                Val::Function(*f, Rc::new(bound.iter().map(|(n, v)| (*n, v.map(change))).collect()))
+            ModelicaValue::Tuple(values) => {
+                ModelicaValue::Tuple(Rc::new(values.iter().map(|v| v.map(change)).collect()))
             }
-            Val::Text(_) | Val::Object(_) => self.clone(),
+            ModelicaValue::Function(f, bound) => {
+                ModelicaValue::Function(*f, Rc::new(bound.iter().map(|(n, v)| (*n, v.map(change))).collect()))
+            }
+            ModelicaValue::Text(_) | ModelicaValue::Object(_) => self.clone(),
         }
     }
 
     /// Combines two values of equal shape scalar by scalar; `None` if the shapes differ.
-    pub fn zip(&self, other: &Val, combine: &mut impl FnMut(ExprId, ExprId, Type) -> ExprId) -> Option<Val> {
+    pub fn zip(
+        &self,
+        other: &ModelicaValue,
+        combine: &mut impl FnMut(ExprId, ExprId, ScalarType) -> ExprId,
+    ) -> Option<ModelicaValue> {
         Some(match (self, other) {
-            (Val::Scalar(a, ta), Val::Scalar(b, tb)) => {
+            (ModelicaValue::Scalar(a, ta), ModelicaValue::Scalar(b, tb)) => {
                 let ty = wider(*ta, *tb)?;
-                Val::Scalar(combine(*a, *b, ty), ty)
+                ModelicaValue::Scalar(combine(*a, *b, ty), ty)
             }
-            (Val::Array { dims: da, elements: a }, Val::Array { dims: db, elements: b }) if da == db => {
+            (ModelicaValue::Array { dims: da, elements: a }, ModelicaValue::Array { dims: db, elements: b })
+                if da == db =>
+            {
                 let elements: Option<Vec<_>> = a.iter().zip(b.iter()).map(|(a, b)| a.zip(b, combine)).collect();
-                Val::array(da.clone(), elements?)
+                ModelicaValue::array(da.clone(), elements?)
             }
-            (Val::Record(a), Val::Record(b)) if a.fields.len() == b.fields.len() => {
+            (ModelicaValue::Record(a), ModelicaValue::Record(b)) if a.fields.len() == b.fields.len() => {
                 let mut fields = Vec::with_capacity(a.fields.len());
                 for (name, value) in &a.fields {
                     let (_, other) = b.fields.iter().find(|(n, _)| n == name)?;
                     fields.push((*name, value.zip(other, combine)?));
                 }
-                Val::Record(Rc::new(Record { fields, class: a.class }))
+                ModelicaValue::Record(Rc::new(RecordValue { fields, class: a.class }))
             }
-            (Val::Tuple(a), Val::Tuple(b)) if a.len() == b.len() => {
+            (ModelicaValue::Tuple(a), ModelicaValue::Tuple(b)) if a.len() == b.len() => {
                 let values: Option<Vec<_>> = a.iter().zip(b.iter()).map(|(a, b)| a.zip(b, combine)).collect();
-                Val::Tuple(Rc::new(values?))
+                ModelicaValue::Tuple(Rc::new(values?))
             }
-            (Val::Function(f, a), Val::Function(g, b)) if f == g && a.len() == b.len() => {
+            (ModelicaValue::Function(f, a), ModelicaValue::Function(g, b)) if f == g && a.len() == b.len() => {
                 let both: Option<Vec<_>> =
                     a.iter().zip(b.iter()).map(|((n, a), (_, b))| Some((*n, a.zip(b, combine)?))).collect();
-                Val::Function(*f, Rc::new(both?))
+                ModelicaValue::Function(*f, Rc::new(both?))
             }
-            (Val::Text(a), Val::Text(b)) if a == b => Val::Text(a.clone()),
+            (ModelicaValue::Text(a), ModelicaValue::Text(b)) if a == b => ModelicaValue::Text(a.clone()),
             _ => return None,
         })
     }
 
     /// A sub-array by the first index, or the element of a vector.
-    pub fn slice(&self, i: usize) -> Option<Val> {
-        let Val::Array { dims, elements } = self else { return None };
+    pub fn slice(&self, i: usize) -> Option<ModelicaValue> {
+        let ModelicaValue::Array { dims, elements } = self else { return None };
         let inner = &dims[1..];
         let step: usize = inner.iter().product();
         if i >= dims[0] {
@@ -208,38 +217,38 @@ impl Val {
         if inner.is_empty() {
             return elements.get(i).cloned();
         }
-        Some(Val::array(inner.to_vec(), elements[i * step..(i + 1) * step].to_vec()))
+        Some(ModelicaValue::array(inner.to_vec(), elements[i * step..(i + 1) * step].to_vec()))
     }
 }
 
 /// The common type of two scalars: Integer fits where Real is needed.
-pub fn wider(a: Type, b: Type) -> Option<Type> {
+pub fn wider(a: ScalarType, b: ScalarType) -> Option<ScalarType> {
     match (a, b) {
         (a, b) if a == b => Some(a),
-        (Type::Real, Type::Integer) | (Type::Integer, Type::Real) => Some(Type::Real),
+        (ScalarType::Real, ScalarType::Integer) | (ScalarType::Integer, ScalarType::Real) => Some(ScalarType::Real),
         _ => None,
     }
 }
 
 /// Stacks values of equal shape into an array with one more dimension.
-pub fn stack(values: Vec<Val>) -> Option<Val> {
+pub fn stack(values: Vec<ModelicaValue>) -> Option<ModelicaValue> {
     let inner = values.first().map_or(Vec::new(), |v| v.dims().to_vec());
     if values.iter().any(|v| v.dims() != inner) {
         return None;
     }
     let mut dims = vec![values.len()];
     dims.extend(&inner);
-    let elements: Vec<Val> = values.iter().flat_map(|v| v.elements().iter().cloned()).collect();
-    Some(Val::array(dims, unify(elements)))
+    let elements: Vec<ModelicaValue> = values.iter().flat_map(|v| v.elements().iter().cloned()).collect();
+    Some(ModelicaValue::array(dims, unify(elements)))
 }
 
 /// Integers among Reals become Reals.
-fn unify(mut elements: Vec<Val>) -> Vec<Val> {
-    let real = elements.iter().any(|v| matches!(v, Val::Scalar(_, Type::Real)));
+fn unify(mut elements: Vec<ModelicaValue>) -> Vec<ModelicaValue> {
+    let real = elements.iter().any(|v| matches!(v, ModelicaValue::Scalar(_, ScalarType::Real)));
     if real {
         for v in &mut elements {
-            if let Val::Scalar(_, ty @ Type::Integer) = v {
-                *ty = Type::Real;
+            if let ModelicaValue::Scalar(_, ty @ ScalarType::Integer) = v {
+                *ty = ScalarType::Real;
             }
         }
     }
@@ -252,13 +261,13 @@ pub fn size_text(dims: &[usize]) -> String {
     format!("[{}]", parts.join(", "))
 }
 
-impl Val {
+impl ModelicaValue {
     /// Numbers of the wider of their own and the given type.
-    pub(in crate::instance) fn with_type(&self, ty: Type) -> Val {
+    pub(in crate::instance) fn with_type(&self, ty: ScalarType) -> ModelicaValue {
         match self {
-            Val::Scalar(e, own) => Val::Scalar(*e, wider(*own, ty).unwrap_or(*own)),
-            Val::Array { dims, elements } => {
-                Val::array(dims.clone(), elements.iter().map(|v| v.with_type(ty)).collect())
+            ModelicaValue::Scalar(e, own) => ModelicaValue::Scalar(*e, wider(*own, ty).unwrap_or(*own)),
+            ModelicaValue::Array { dims, elements } => {
+                ModelicaValue::array(dims.clone(), elements.iter().map(|v| v.with_type(ty)).collect())
             }
             other => other.clone(),
         }
@@ -272,7 +281,7 @@ fn words(part: &MessagePart, exprs: &Exprs) -> Option<String> {
         MessagePart::Value(e, ty) => {
             let x = exprs.as_num(*e)?;
             Some(match ty {
-                Type::Boolean => if x == 0.0 { "false" } else { "true" }.to_owned(),
+                ScalarType::Boolean => if x == 0.0 { "false" } else { "true" }.to_owned(),
                 _ => bramah_expr::print::number(x, Some(6)),
             })
         }

@@ -1,8 +1,13 @@
 //! Names: from the innermost place outwards, through inherited elements, imports and enclosing classes (MLS 5.3).
 
-use crate::instance::modifiers::{Arg, ArgKind, Reached};
-use crate::instance::template::{Base, DEEPEST, Element, Kind, Source, Template, What};
-use crate::instance::{ClassRef, ElementState, Enumeration, Inherited, NameLookup, NodeId, ROOT, Scope, ScopeId, View};
+use crate::instance::modifiers::{ElementModifiers, Modifier, ModifierKind};
+use crate::instance::template::{
+    BaseClass, DEEPEST, ExtendsModification, ExtendsModificationKind, Template, TemplateElement, TemplateElementKind,
+};
+use crate::instance::{
+    ClassRef, ElementState, EnumerationDefinition, InheritedPrefixes, LookupContext, NameLookup, NodeId, ROOT, Scope,
+    ScopeId,
+};
 use crate::resolve::ClassId;
 use bramah_syntax::ast::{self, ClassBody, Import};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
@@ -13,7 +18,7 @@ use std::rc::Rc;
 /// The types that need no declaration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica names")]
-pub enum Builtin {
+pub enum BuiltinType {
     Real,
     Integer,
     Boolean,
@@ -26,13 +31,13 @@ pub enum Builtin {
 
 /// What a name means.
 #[derive(Clone)]
-pub enum Found<'a> {
+pub enum LookupResult<'a> {
     /// An element that is a component.
     Component(ScopeId, u32),
     /// A class.
     Class(ClassRef<'a>),
     /// A built-in type.
-    Builtin(Builtin),
+    Builtin(BuiltinType),
 }
 
 /// Enumerations that are always there.
@@ -41,8 +46,8 @@ pub const STATE_SELECT: u32 = 0;
 pub const ASSERTION_LEVEL: u32 = 1;
 
 /// The predefined enumerations, in the order of the constants above.
-pub fn predefined_enumerations() -> Vec<Enumeration> {
-    let make = |name: &str, literals: &[&str]| Enumeration {
+pub fn predefined_enumerations() -> Vec<EnumerationDefinition> {
+    let make = |name: &str, literals: &[&str]| EnumerationDefinition {
         name: name.into(),
         literals: literals.iter().map(|l| Symbol::new(l)).collect(),
     };
@@ -52,27 +57,31 @@ pub fn predefined_enumerations() -> Vec<Enumeration> {
     ]
 }
 
-fn builtin(name: Symbol) -> Option<Builtin> {
+fn builtin(name: Symbol) -> Option<BuiltinType> {
     Some(match name.as_str() {
-        "Real" => Builtin::Real,
-        "Integer" => Builtin::Integer,
-        "Boolean" => Builtin::Boolean,
-        "String" => Builtin::String,
-        "ExternalObject" => Builtin::Object,
-        "StateSelect" => Builtin::Enumeration(STATE_SELECT),
-        "AssertionLevel" => Builtin::Enumeration(ASSERTION_LEVEL),
+        "Real" => BuiltinType::Real,
+        "Integer" => BuiltinType::Integer,
+        "Boolean" => BuiltinType::Boolean,
+        "String" => BuiltinType::String,
+        "ExternalObject" => BuiltinType::Object,
+        "StateSelect" => BuiltinType::Enumeration(STATE_SELECT),
+        "AssertionLevel" => BuiltinType::Enumeration(ASSERTION_LEVEL),
         _ => return None,
     })
 }
 
 impl<'a> NameLookup<'_, 'a, '_> {
     /// What a simple name means at a place.
-    pub fn lookup(&mut self, view: View, name: Symbol) -> Option<Found<'a>> {
+    pub fn lookup(&mut self, view: LookupContext, name: Symbol) -> Option<LookupResult<'a>> {
         self.lookup_nested(view, name).or_else(|| self.lookup_top(name))
     }
 
     /// What a name means below the top level.
-    pub(in crate::instance) fn lookup_nested(&mut self, mut view: View, name: Symbol) -> Option<Found<'a>> {
+    pub(in crate::instance) fn lookup_nested(
+        &mut self,
+        mut view: LookupContext,
+        name: Symbol,
+    ) -> Option<LookupResult<'a>> {
         while view != ROOT {
             let template = self.instance.scope(view.scope).template.clone();
             let base = &template.bases[view.base as usize];
@@ -83,7 +92,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
                     return Some(self.found(view.scope, &template, i));
                 }
                 if let Some(class) = self.instance.library.child(base.class, name) {
-                    return Some(Found::Class(ClassRef { class, parent: view, args: Rc::from([]) }));
+                    return Some(LookupResult::Class(ClassRef { class, parent: view, args: Rc::from([]) }));
                 }
                 if let Some(found) = self.imported(base, name) {
                     return Some(found);
@@ -94,14 +103,17 @@ impl<'a> NameLookup<'_, 'a, '_> {
         None
     }
 
-    fn lookup_top(&mut self, name: Symbol) -> Option<Found<'a>> {
+    fn lookup_top(&mut self, name: Symbol) -> Option<LookupResult<'a>> {
         if let Some(b) = builtin(name) {
-            return Some(Found::Builtin(b));
+            return Some(LookupResult::Builtin(b));
         }
-        self.instance.library.top(name).map(|class| Found::Class(ClassRef { class, parent: ROOT, args: Rc::from([]) }))
+        self.instance
+            .library
+            .top(name)
+            .map(|class| LookupResult::Class(ClassRef { class, parent: ROOT, args: Rc::from([]) }))
     }
 
-    fn imported(&mut self, base: &Base<'a>, name: Symbol) -> Option<Found<'a>> {
+    fn imported(&mut self, base: &BaseClass<'a>, name: Symbol) -> Option<LookupResult<'a>> {
         for import in &base.imports {
             let found = match import {
                 Import::Single { alias, path } => {
@@ -121,7 +133,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         None
     }
 
-    fn lookup_full(&mut self, parts: &[ast::Ident], last: Option<Symbol>) -> Option<Found<'a>> {
+    fn lookup_full(&mut self, parts: &[ast::Ident], last: Option<Symbol>) -> Option<LookupResult<'a>> {
         let mut found = self.lookup_top(parts[0].name)?;
         for part in &parts[1..] {
             let inside = self.member(&found, part.name)?;
@@ -135,10 +147,10 @@ impl<'a> NameLookup<'_, 'a, '_> {
     }
 
     /// The meaning of an element: its class, or the component itself.
-    fn found(&mut self, scope: ScopeId, template: &Template<'a>, index: u32) -> Found<'a> {
+    fn found(&mut self, scope: ScopeId, template: &Template<'a>, index: u32) -> LookupResult<'a> {
         match template.elements[index as usize].kind {
-            Kind::Component(_) => Found::Component(scope, index),
-            Kind::Class(_) => Found::Class(self.class_element(scope, index)),
+            TemplateElementKind::Component(_) => LookupResult::Component(scope, index),
+            TemplateElementKind::Class(_) => LookupResult::Class(self.class_element(scope, index)),
         }
     }
 
@@ -150,10 +162,10 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let reached = self.reached(scope, index);
         let template = self.instance.scope(scope).template.clone();
         let element = &template.elements[index as usize];
-        let Kind::Class(declared) = element.kind else { unreachable!("the caller found a class") };
-        let own = View { scope, base: element.base };
+        let TemplateElementKind::Class(declared) = element.kind else { unreachable!("the caller found a class") };
+        let own = LookupContext { scope, base: element.base };
         let (ast, parent, redeclared) = match reached.redeclare {
-            Some((ArgKind::Class(c), view, ..)) => (c, view, true),
+            Some((ModifierKind::Class(c), view, ..)) => (c, view, true),
             _ => (declared, own, false),
         };
         let textual = template.bases[element.base as usize].class;
@@ -161,8 +173,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let mut args = reached.args;
         if let Some(m) = constraining(declared, redeclared) {
             let none: Rc<[_]> = Rc::from([]);
-            let given = m.arguments.iter().filter_map(|a| Arg::new(a, own, &none, false));
-            args.extend(given.map(|a| Arg { default: redeclared, ..a }));
+            let given = m.arguments.iter().filter_map(|a| Modifier::new(a, own, &none, false));
+            args.extend(given.map(|a| Modifier { default: redeclared, ..a }));
         }
         let mut found = ClassRef { class, parent, args: args.into() };
         self.instance.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
@@ -180,15 +192,15 @@ impl<'a> NameLookup<'_, 'a, '_> {
     fn check_class_chain(
         &mut self,
         declared: &'a ast::Class,
-        own: View,
+        own: LookupContext,
         textual: ClassId,
-        all: &[(ArgKind<'a>, View)],
+        all: &[(ModifierKind<'a>, LookupContext)],
     ) {
         let steps = all.iter().filter_map(|(kind, view)| match kind {
-            ArgKind::Class(c) => Some((*c, *view)),
+            ModifierKind::Class(c) => Some((*c, *view)),
             _ => None,
         });
-        let steps: Vec<(&'a ast::Class, View)> = steps.chain([(declared, own)]).collect();
+        let steps: Vec<(&'a ast::Class, LookupContext)> = steps.chain([(declared, own)]).collect();
         let outermost = self.class_of(steps[0].0, steps[0].1, textual);
         for &(step, view) in &steps {
             let Some(constraint) = &step.constraint else { continue };
@@ -207,16 +219,16 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
-    fn class_of(&mut self, ast: &'a ast::Class, parent: View, textual: ClassId) -> Found<'a> {
+    fn class_of(&mut self, ast: &'a ast::Class, parent: LookupContext, textual: ClassId) -> LookupResult<'a> {
         let class = self.instance.library.enter(ast, Some(textual));
-        Found::Class(ClassRef { class, parent, args: Rc::from([]) })
+        LookupResult::Class(ClassRef { class, parent, args: Rc::from([]) })
     }
 
     /// Whether a class that takes the place of a declared one has what the constraining class promises (MLS 6.4).
     fn fits_declared(
         &mut self,
         declared: &'a ast::Class,
-        own: View,
+        own: LookupContext,
         textual: ClassId,
         at: Span,
         found: &ClassRef<'a>,
@@ -235,16 +247,24 @@ impl<'a> NameLookup<'_, 'a, '_> {
         self.instance.constrained.push(class);
         let (constraint, place) = match path {
             Some(path) => (self.lookup_path(own, path).ok(), path.span),
-            None => (Some(Found::Class(ClassRef { class, parent: own, args: Rc::from([]) })), declared.name.span),
+            None => {
+                (Some(LookupResult::Class(ClassRef { class, parent: own, args: Rc::from([]) })), declared.name.span)
+            }
         };
         self.instance.constrained.pop();
-        constraint.is_none_or(|c| self.instance.builder().check_subtype(&c, &Found::Class(found.clone()), at, place))
+        constraint
+            .is_none_or(|c| self.instance.builder().check_subtype(&c, &LookupResult::Class(found.clone()), at, place))
     }
 
     /// What a dotted name may reach: nothing protected, and in a class that is used as a package only what does not depend
     /// on its components (MLS 4.1, 5.3.2).
-    pub(in crate::instance) fn check_member(&mut self, around: &Found<'a>, inside: &Found<'a>, part: ast::Ident) {
-        let Found::Class(class) = around else { return };
+    pub(in crate::instance) fn check_member(
+        &mut self,
+        around: &LookupResult<'a>,
+        inside: &LookupResult<'a>,
+        part: ast::Ident,
+    ) {
+        let LookupResult::Class(class) = around else { return };
         if self.instance.gathering.iter().any(|(c, _)| *c == class.class) {
             return;
         }
@@ -258,7 +278,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
                 "cannot be reached from outside",
                 "declare it above `protected`, or use it in a class that extends this one",
             )
-        } else if let (Found::Class(c), false) = (inside, template.is_package()) {
+        } else if let (LookupResult::Class(c), false) = (inside, template.is_package()) {
             if self.instance.library.class(c.class).prefixes.encapsulated {
                 return;
             }
@@ -279,8 +299,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
     }
 
     /// A member of something found: a class in a package, a constant, an inherited class.
-    pub fn member(&mut self, found: &Found<'a>, name: Symbol) -> Option<Found<'a>> {
-        let Found::Class(class) = found else { return None };
+    pub fn member(&mut self, found: &LookupResult<'a>, name: Symbol) -> Option<LookupResult<'a>> {
+        let LookupResult::Class(class) = found else { return None };
         let scope = if self.instance.gathering.contains(&(class.class, class.parent)) {
             // `package P extends P.Icons.Package`: what P inherits is not known yet, what is written in it is.
             self.bare_scope(class.class, class.parent)
@@ -293,8 +313,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
         for (base, view) in template.bases.iter().zip(0u32..) {
             if let Some(child) = self.instance.library.child(base.class, name) {
-                let parent = View { scope, base: view };
-                return Some(Found::Class(ClassRef { class: child, parent, args: Rc::from([]) }));
+                let parent = LookupContext { scope, base: view };
+                return Some(LookupResult::Class(ClassRef { class: child, parent, args: Rc::from([]) }));
             }
         }
         None
@@ -304,7 +324,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
     ///
     /// # Errors
     /// The index of the first part that means nothing.
-    pub fn lookup_path(&mut self, view: View, path: &ast::Path) -> Result<Found<'a>, usize> {
+    pub fn lookup_path(&mut self, view: LookupContext, path: &ast::Path) -> Result<LookupResult<'a>, usize> {
         let first = path.parts[0].name;
         let start = if path.global { self.lookup_top(first) } else { self.lookup(view, first) };
         let mut found = start.ok_or(0usize)?;
@@ -317,9 +337,9 @@ impl<'a> NameLookup<'_, 'a, '_> {
     }
 
     /// A class by path, or a message.
-    pub fn class_at(&mut self, view: View, path: &'a ast::Path) -> Option<Found<'a>> {
+    pub fn class_at(&mut self, view: LookupContext, path: &'a ast::Path) -> Option<LookupResult<'a>> {
         match self.lookup_path(view, path) {
-            Ok(Found::Component(..)) => {
+            Ok(LookupResult::Component(..)) => {
                 let name = path.dotted();
                 self.instance.report(
                     Diagnostic::new(Code::WrongClassKind, format!("`{name}` is a component, not a class"))
@@ -340,24 +360,24 @@ impl<'a> NameLookup<'_, 'a, '_> {
     pub(in crate::instance) fn find_base(
         &mut self,
         class: ClassId,
-        parent: View,
+        parent: LookupContext,
         path: &ast::Path,
-    ) -> Option<Found<'a>> {
+    ) -> Option<LookupResult<'a>> {
         let own = !path.global && matches!(self.instance.library.class(class).body, ClassBody::Long(_));
         if own {
             let bare = self.bare_scope(class, parent);
-            return self.lookup_path(View { scope: bare, base: 0 }, path).ok();
+            return self.lookup_path(LookupContext { scope: bare, base: 0 }, path).ok();
         }
         self.lookup_path(parent, path).ok()
     }
 
     /// A scope that knows only the classes and imports written in a class itself.
-    fn bare_scope(&mut self, class: ClassId, parent: View) -> ScopeId {
+    fn bare_scope(&mut self, class: ClassId, parent: LookupContext) -> ScopeId {
         if let Some(&scope) = self.instance.bare.get(&(class, parent)) {
             return scope;
         }
         let ast = self.instance.library.class(class);
-        let mut base = Base::of(class, ast, parent);
+        let mut base = BaseClass::of(class, ast, parent);
         let mut elements = Vec::new();
         let written = if let ClassBody::Long(body) = &ast.body { body.elements.as_slice() } else { &[] };
         for e in written {
@@ -366,9 +386,9 @@ impl<'a> NameLookup<'_, 'a, '_> {
                 ast::ElementKind::Class(c) if !c.prefixes.redeclare => {
                     self.instance.library.enter(c, Some(class));
                     base.names.insert(c.name.name);
-                    elements.push(Element {
+                    elements.push(TemplateElement {
                         name: c.name.name,
-                        kind: Kind::Class(c),
+                        kind: TemplateElementKind::Class(c),
                         base: 0,
                         modified: Vec::new(),
                         protected: e.protected,
@@ -390,12 +410,12 @@ impl<'a> NameLookup<'_, 'a, '_> {
         &mut self,
         template: Rc<Template<'a>>,
         name: String,
-        args: Rc<[Arg<'a>]>,
+        args: Rc<[Modifier<'a>]>,
         owner: Option<ScopeId>,
         span: Span,
     ) -> ScopeId {
         let elements = vec![ElementState::Unknown; template.elements.len()];
-        let prefix = Inherited::default();
+        let prefix = InheritedPrefixes::default();
         self.instance.scopes.push(Scope {
             template,
             name,
@@ -447,18 +467,18 @@ impl<'a> NameLookup<'_, 'a, '_> {
             _ => Vec::new(),
         };
         let name = self.instance.library.full_name(class);
-        self.instance.enumerations.push(Enumeration { name, literals });
+        self.instance.enumerations.push(EnumerationDefinition { name, literals });
         let i = u32::try_from(self.instance.enumerations.len() - 1).expect("fewer than 2^32 types");
         self.instance.enumeration_index.insert(class, i);
         i
     }
 
     /// All modifications that reach an element, and its value.
-    pub fn reached(&mut self, scope: ScopeId, index: u32) -> Reached<'a> {
+    pub fn reached(&mut self, scope: ScopeId, index: u32) -> ElementModifiers<'a> {
         let s = self.instance.scope(scope);
         let template = s.template.clone();
         let element = &template.elements[index as usize];
-        let mut reached = Reached::default();
+        let mut reached = ElementModifiers::default();
         let args = s.args.clone();
         let binding = s.binding.clone();
         let mut outer: Option<Span> = None;
@@ -471,22 +491,21 @@ impl<'a> NameLookup<'_, 'a, '_> {
             }
             reached.take(arg);
         }
-        let of_record = binding.filter(|_| matches!(element.kind, Kind::Component(_))).map(|b| {
+        let of_record = binding.filter(|_| matches!(element.kind, TemplateElementKind::Component(_))).map(|b| {
             let access =
-                b.access.iter().copied().chain([crate::instance::modifiers::Access::Field(element.name)]).collect();
+                b.access.iter().copied().chain([crate::instance::modifiers::AccessStep::Field(element.name)]).collect();
             crate::instance::modifiers::Binding { access, ..b }
         });
         // constants come with the class, not with a value of it (MLS 12.6)
-        let constant =
-            matches!(element.kind, Kind::Component(c) if c.prefix.variability == Some(ast::Variability::Constant));
+        let constant = matches!(element.kind, TemplateElementKind::Component(c) if c.prefix.variability == Some(ast::VariabilityPrefix::Constant));
         if !constant && reached.binding.is_none() {
             reached.binding = of_record.clone();
         }
         let none: Rc<[_]> = Rc::from([]);
-        let redeclaration = |s: &&Source<'a>| s.base == 0 && template.bases[0].short;
+        let redeclaration = |s: &&ExtendsModification<'a>| s.base == 0 && template.bases[0].short;
         let (own, inherited): (Vec<_>, Vec<_>) = element.modified.iter().partition(redeclaration);
-        let as_arg = |s: &Source<'a>| source_arg(s, View { scope, base: s.base }, &none);
-        let own: Vec<Arg<'a>> = own.into_iter().filter_map(as_arg).collect();
+        let as_arg = |s: &ExtendsModification<'a>| source_arg(s, LookupContext { scope, base: s.base }, &none);
+        let own: Vec<Modifier<'a>> = own.into_iter().filter_map(as_arg).collect();
         let defaults = defaults.into_iter().cloned().collect();
         // what is modified of a base class where it was found comes before what that class says itself
         let mut of_bases = template.base_args.iter().filter(|(_, arg)| arg.target() == element.name).peekable();
@@ -503,11 +522,11 @@ impl<'a> NameLookup<'_, 'a, '_> {
             reached.take(arg);
             outer = outer.or(Some(arg.span));
         }
-        if let Kind::Component(c) = element.kind {
+        if let TemplateElementKind::Component(c) = element.kind {
             self.check_final(c.prefixes.final_, outer, c.name.span, element.name);
-            let redeclared = matches!(reached.redeclare, Some((ArgKind::Component(_), ..)));
+            let redeclared = matches!(reached.redeclare, Some((ModifierKind::Component(_), ..)));
             let constraint = c.constraint.as_ref().and_then(|k| k.modification.as_ref());
-            let view = View { scope, base: element.base };
+            let view = LookupContext { scope, base: element.base };
             if let Some(m) = constraint {
                 reached.modification(m, view, &none, false, false, element.span);
             }
@@ -538,7 +557,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         while let Some(owner) = at {
             let template = self.instance.scope(owner).template.clone();
             if let Some(&i) = template.by_name.get(&name)
-                && matches!(template.elements[i as usize].kind, Kind::Component(c) if c.prefixes.inner)
+                && matches!(template.elements[i as usize].kind, TemplateElementKind::Component(c) if c.prefixes.inner)
             {
                 return self.instance.builder().component(owner, i);
             }
@@ -559,11 +578,16 @@ fn constraining(declared: &ast::Class, redeclared: bool) -> Option<&ast::Modific
 }
 
 /// A modification by a base class as an argument.
-fn source_arg<'a>(source: &Source<'a>, view: View, none: &Rc<[crate::instance::modifiers::Access]>) -> Option<Arg<'a>> {
-    let made = |kind, span| Arg { kind, view, access: none.clone(), each: false, final_: false, default: false, span };
+fn source_arg<'a>(
+    source: &ExtendsModification<'a>,
+    view: LookupContext,
+    none: &Rc<[crate::instance::modifiers::AccessStep]>,
+) -> Option<Modifier<'a>> {
+    let made =
+        |kind, span| Modifier { kind, view, access: none.clone(), each: false, final_: false, default: false, span };
     match source.what {
-        What::Argument(a) => Arg::new(a, view, none, false),
-        What::Component(c) => Some(made(ArgKind::Component(c), c.name.span)),
-        What::Class(c) => Some(made(ArgKind::Class(c), c.name.span)),
+        ExtendsModificationKind::Argument(a) => Modifier::new(a, view, none, false),
+        ExtendsModificationKind::Component(c) => Some(made(ModifierKind::Component(c), c.name.span)),
+        ExtendsModificationKind::Class(c) => Some(made(ModifierKind::Class(c), c.name.span)),
     }
 }

@@ -1,10 +1,10 @@
 //! What a class holds, inherited elements included: gathered once per class, shared by all its instances.
 
-use crate::instance::lookup::{Builtin, Found};
-use crate::instance::modifiers::Arg;
-use crate::instance::{ClassRef, NameLookup, View};
+use crate::instance::lookup::{BuiltinType, LookupResult};
+use crate::instance::modifiers::Modifier;
+use crate::instance::{ClassRef, LookupContext, NameLookup};
 use crate::resolve::ClassId;
-use bramah_syntax::ast::{self, ArgumentKind, ClassBody, ElementKind};
+use bramah_syntax::ast::{self, ClassBody, ElementKind, ModificationArgumentKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -16,18 +16,18 @@ pub struct Template<'a> {
     /// The class.
     pub class: ClassId,
     /// The class and everything it extends; 0 is the class itself.
-    pub bases: Vec<Base<'a>>,
+    pub bases: Vec<BaseClass<'a>>,
     /// Elements in declaration order, inherited ones where the `extends` stands.
-    pub elements: Vec<Element<'a>>,
+    pub elements: Vec<TemplateElement<'a>>,
     /// Elements by name.
     pub by_name: FxHashMap<Symbol, u32>,
     /// The built-in type this class is a kind of.
-    pub builtin: Option<Builtin>,
+    pub builtin: Option<BuiltinType>,
     /// Attribute modifications along the chain of types, outermost first.
-    pub builtin_args: Vec<Source<'a>>,
+    pub builtin_args: Vec<ExtendsModification<'a>>,
     /// What is modified of a base class where it was found, with the index of that base, outermost first: a class element
     /// carries the modifiers of its `constrainedby` and of the component or package that holds it.
-    pub base_args: Vec<(u32, Arg<'a>)>,
+    pub base_args: Vec<(u32, Modifier<'a>)>,
     /// Array dimensions of a type such as `type Triple = Real[3]`, outermost last.
     pub dims: Vec<(&'a [ast::Subscript], u32)>,
     /// Prefixes of a short class (`connector In = input Real`).
@@ -40,13 +40,13 @@ pub struct Template<'a> {
 
 /// A class that contributes elements, equations and a place to look up names.
 #[derive(Clone)]
-pub struct Base<'a> {
+pub struct BaseClass<'a> {
     /// The class.
     pub class: ClassId,
     /// Its syntax.
     pub ast: &'a ast::Class,
     /// What lies around it. `None` when it stands inside the instance itself.
-    pub parent: View,
+    pub parent: LookupContext,
     /// Names of elements that it knows, its own and inherited.
     pub names: FxHashSet<Symbol>,
     /// Its imports.
@@ -85,18 +85,18 @@ impl Template<'_> {
     /// Whether a class holds what a package holds: classes and constants. Other kinds than models are never used as one.
     pub(in crate::instance) fn is_package(&self) -> bool {
         let model = matches!(self.kind, ast::ClassKind::Model | ast::ClassKind::Block | ast::ClassKind::Class);
-        let constant = |e: &Element<'_>| match e.kind {
-            Kind::Component(c) => c.prefix.variability == Some(ast::Variability::Constant),
-            Kind::Class(_) => true,
+        let constant = |e: &TemplateElement<'_>| match e.kind {
+            TemplateElementKind::Component(c) => c.prefix.variability == Some(ast::VariabilityPrefix::Constant),
+            TemplateElementKind::Class(_) => true,
         };
         !model || self.builtin.is_some() || self.elements.iter().all(constant)
     }
 }
 
-impl<'a> Base<'a> {
+impl<'a> BaseClass<'a> {
     /// A class before its elements are known.
-    pub(in crate::instance) fn of(class: ClassId, ast: &'a ast::Class, parent: View) -> Self {
-        Base {
+    pub(in crate::instance) fn of(class: ClassId, ast: &'a ast::Class, parent: LookupContext) -> Self {
+        BaseClass {
             class,
             ast,
             parent,
@@ -111,15 +111,15 @@ impl<'a> Base<'a> {
 
 /// One element.
 #[derive(Clone)]
-pub struct Element<'a> {
+pub struct TemplateElement<'a> {
     /// Its name.
     pub name: Symbol,
     /// What it is.
-    pub kind: Kind<'a>,
+    pub kind: TemplateElementKind<'a>,
     /// The base it is declared in.
     pub base: u32,
     /// Modifications by `extends` clauses, outermost first.
-    pub modified: Vec<Source<'a>>,
+    pub modified: Vec<ExtendsModification<'a>>,
     /// In a protected section.
     pub protected: bool,
     /// Where it stands.
@@ -128,29 +128,29 @@ pub struct Element<'a> {
 
 /// A component or a class.
 #[derive(Clone, Copy)]
-pub enum Kind<'a> {
+pub enum TemplateElementKind<'a> {
     /// A component.
-    Component(&'a ast::Component),
+    Component(&'a ast::ComponentDeclaration),
     /// A class.
     Class(&'a ast::Class),
 }
 
 /// A modification written in one of the bases.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct ExtendsModification<'a> {
     /// What it is.
-    pub what: What<'a>,
+    pub what: ExtendsModificationKind<'a>,
     /// The base whose names it uses.
     pub base: u32,
 }
 
 /// The forms in which a base modifies an inherited element.
 #[derive(Clone, Copy)]
-pub enum What<'a> {
+pub enum ExtendsModificationKind<'a> {
     /// An argument of `extends B(...)`.
-    Argument(&'a ast::Argument),
+    Argument(&'a ast::ModificationArgument),
     /// `redeclare T x;` as an element.
-    Component(&'a ast::Component),
+    Component(&'a ast::ComponentDeclaration),
     /// `redeclare model M = N;` as an element.
     Class(&'a ast::Class),
 }
@@ -164,7 +164,7 @@ const MOST_BASES: usize = 20_000;
 
 impl<'a> NameLookup<'_, 'a, '_> {
     /// The template of a class at a place.
-    pub fn template(&mut self, class: ClassId, parent: View) -> Rc<Template<'a>> {
+    pub fn template(&mut self, class: ClassId, parent: LookupContext) -> Rc<Template<'a>> {
         if let Some(t) = self.instance.templates.get(&(class, parent)) {
             return t.clone();
         }
@@ -180,7 +180,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         } else {
             self.endless_lookup("base", class, &self.gathered_now());
             t.broken = true;
-            t.bases.push(Base::of(class, ast, parent));
+            t.bases.push(BaseClass::of(class, ast, parent));
         }
         let t = Rc::new(t);
         self.instance.templates.insert((class, parent), t.clone());
@@ -212,10 +212,10 @@ impl<'a> NameLookup<'_, 'a, '_> {
     }
 
     /// Adds a class and what it extends to the template; returns the index of its base.
-    fn gather(&mut self, t: &mut Template<'a>, class: ClassId, parent: View, chain: &mut Vec<ClassId>) -> u32 {
+    fn gather(&mut self, t: &mut Template<'a>, class: ClassId, parent: LookupContext, chain: &mut Vec<ClassId>) -> u32 {
         let ast = self.instance.library.class(class);
         let base = u32::try_from(t.bases.len()).expect("fewer than 2^32 bases");
-        t.bases.push(Base::of(class, ast, parent));
+        t.bases.push(BaseClass::of(class, ast, parent));
         if chain.contains(&class) || chain.len() > DEEPEST {
             let name = self.instance.library.full_name(class);
             let from = chain.iter().position(|&c| c == class).unwrap_or(0);
@@ -254,7 +254,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
                 }
                 self.gather_extends(t, base, path, modification.as_ref(), chain);
             }
-            ClassBody::Enumeration(_) => t.builtin = Some(Builtin::Enumeration(self.enumeration(class))),
+            ClassBody::Enumeration(_) => t.builtin = Some(BuiltinType::Enumeration(self.enumeration(class))),
             ClassBody::Derivative { .. } => self.instance.unsupported(ast.span, "a function defined by `der(...)`"),
         }
         chain.pop();
@@ -278,13 +278,20 @@ impl<'a> NameLookup<'_, 'a, '_> {
                 }
                 ElementKind::Component(c) => {
                     let redeclare = c.prefixes.redeclare;
-                    self.add_element(t, base, element, c.name, Kind::Component(c), redeclare);
+                    self.add_element(t, base, element, c.name, TemplateElementKind::Component(c), redeclare);
                 }
                 ElementKind::Class(c) => {
                     self.instance.library.enter(c, Some(t.bases[base as usize].class));
                     // `model extends M` takes the place of the inherited class, with or without `redeclare`
                     let extends = matches!(&c.body, ClassBody::Long(body) if body.class_extends.is_some());
-                    self.add_element(t, base, element, c.name, Kind::Class(c), c.prefixes.redeclare || extends);
+                    self.add_element(
+                        t,
+                        base,
+                        element,
+                        c.name,
+                        TemplateElementKind::Class(c),
+                        c.prefixes.redeclare || extends,
+                    );
                 }
             }
         }
@@ -296,7 +303,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         base: u32,
         element: &'a ast::Element,
         name: ast::Ident,
-        kind: Kind<'a>,
+        kind: TemplateElementKind<'a>,
         redeclare: bool,
     ) {
         t.bases[base as usize].names.insert(name.name);
@@ -315,9 +322,9 @@ impl<'a> NameLookup<'_, 'a, '_> {
                 return;
             }
             let closed = t.elements[i as usize].modified.first().is_some_and(|s| match s.what {
-                What::Class(c) => s.base != base && !c.prefixes.replaceable,
-                What::Component(c) => s.base != base && !c.prefixes.replaceable,
-                What::Argument(_) => false,
+                ExtendsModificationKind::Class(c) => s.base != base && !c.prefixes.replaceable,
+                ExtendsModificationKind::Component(c) => s.base != base && !c.prefixes.replaceable,
+                ExtendsModificationKind::Argument(_) => false,
             });
             if redeclare && closed {
                 let class = self.instance.library.full_name(t.bases[base as usize].class);
@@ -333,10 +340,10 @@ impl<'a> NameLookup<'_, 'a, '_> {
             let old = &mut t.elements[i as usize];
             if redeclare {
                 let what = match kind {
-                    Kind::Component(c) => What::Component(c),
-                    Kind::Class(c) => What::Class(c),
+                    TemplateElementKind::Component(c) => ExtendsModificationKind::Component(c),
+                    TemplateElementKind::Class(c) => ExtendsModificationKind::Class(c),
                 };
-                old.modified.insert(0, Source { what, base });
+                old.modified.insert(0, ExtendsModification { what, base });
             } else if old.base == base || !same_declaration(old.kind, kind) {
                 self.duplicate(t, i, name);
             }
@@ -355,7 +362,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
             );
         }
         t.by_name.insert(name.name, u32::try_from(t.elements.len()).expect("fewer than 2^32 elements"));
-        t.elements.push(Element {
+        t.elements.push(TemplateElement {
             name: name.name,
             kind,
             base,
@@ -368,8 +375,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
     fn duplicate(&mut self, t: &Template<'a>, old: u32, name: ast::Ident) {
         let class = self.instance.library.full_name(t.class);
         let first = match t.elements[old as usize].kind {
-            Kind::Component(c) => c.name.span,
-            Kind::Class(c) => c.name.span,
+            TemplateElementKind::Component(c) => c.name.span,
+            TemplateElementKind::Class(c) => c.name.span,
         };
         self.instance.report(
             Diagnostic::new(Code::Duplicate, format!("`{}` is declared twice in `{class}`", name.name))
@@ -391,15 +398,16 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let (class, parent) = (t.bases[base as usize].class, t.bases[base as usize].parent);
         let arguments = modification.map_or(&[][..], |m| m.arguments.as_slice());
         match self.find_base(class, parent, path) {
-            Some(Found::Builtin(b)) => {
+            Some(LookupResult::Builtin(b)) => {
                 if matches!(self.instance.library.class(class).body, ClassBody::Long(_)) {
                     self.instance.builder().check_builtin_base(class, b, path.span);
                 }
                 t.builtin = Some(b);
-                let sources = arguments.iter().map(|a| Source { what: What::Argument(a), base });
+                let sources =
+                    arguments.iter().map(|a| ExtendsModification { what: ExtendsModificationKind::Argument(a), base });
                 t.builtin_args.extend(sources);
             }
-            Some(Found::Class(found)) => {
+            Some(LookupResult::Class(found)) => {
                 let long = matches!(self.instance.library.class(class).body, ClassBody::Long(_));
                 if long {
                     self.instance.builder().check_base(class, found.class, path.span);
@@ -423,7 +431,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         t: &mut Template<'a>,
         base: u32,
         found: &ClassRef<'a>,
-        arguments: &'a [ast::Argument],
+        arguments: &'a [ast::ModificationArgument],
         chain: &mut Vec<ClassId>,
     ) {
         let before = t.builtin_args.len();
@@ -432,7 +440,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         self.gather(t, found.class, found.parent, chain);
         let names = t.bases[inner as usize].names.clone();
         // Outer attribute modifications come before those of the type chain.
-        let outer = arguments.iter().map(|a| Source { what: What::Argument(a), base });
+        let outer = arguments.iter().map(|a| ExtendsModification { what: ExtendsModificationKind::Argument(a), base });
         if t.builtin.is_some() {
             let own: Vec<_> = outer.collect();
             t.builtin_args.splice(before..before, own);
@@ -442,18 +450,24 @@ impl<'a> NameLookup<'_, 'a, '_> {
         t.bases[base as usize].names.extend(names);
     }
 
-    fn modify_inherited(&mut self, t: &mut Template<'a>, base: u32, inner: u32, arguments: &'a [ast::Argument]) {
+    fn modify_inherited(
+        &mut self,
+        t: &mut Template<'a>,
+        base: u32,
+        inner: u32,
+        arguments: &'a [ast::ModificationArgument],
+    ) {
         let mut at: FxHashMap<Symbol, usize> = FxHashMap::default();
         for argument in arguments {
             let target = match &argument.kind {
-                ArgumentKind::Modify { path, .. } => path.parts[0],
-                ArgumentKind::Component(c) => c.name,
-                ArgumentKind::Class(c) => c.name,
-                ArgumentKind::BreakComponent(name) => {
+                ModificationArgumentKind::Modify { path, .. } => path.parts[0],
+                ModificationArgumentKind::Component(c) => c.name,
+                ModificationArgumentKind::Class(c) => c.name,
+                ModificationArgumentKind::BreakComponent(name) => {
                     self.break_component(t, inner, *name);
                     continue;
                 }
-                ArgumentKind::BreakConnect(a, b) => {
+                ModificationArgumentKind::BreakConnect(a, b) => {
                     if !t.broken && !t.bases[inner as usize..].iter().any(|base| connects(base.ast, (a, b))) {
                         let class = self.instance.library.full_name(t.bases[inner as usize].class);
                         self.instance.unknown_connection(a, b, &class);
@@ -470,15 +484,17 @@ impl<'a> NameLookup<'_, 'a, '_> {
                     // an element inherited twice takes what the first of two equal `extends` says of it (MLS 5.6.1.2)
                     let element = &mut t.elements[i as usize];
                     let twice = element.base < inner
-                        && element
-                            .modified
-                            .iter()
-                            .any(|s| matches!(s.what, What::Argument(a) if says_the_same(a, argument)));
+                        && element.modified.iter().any(
+                            |s| matches!(s.what, ExtendsModificationKind::Argument(a) if says_the_same(a, argument)),
+                        );
                     if twice {
                         continue;
                     }
                     let modified = &mut element.modified;
-                    modified.insert(*place, Source { what: What::Argument(argument), base });
+                    modified.insert(
+                        *place,
+                        ExtendsModification { what: ExtendsModificationKind::Argument(argument), base },
+                    );
                     *place += 1;
                 }
                 None if t.broken => {}
@@ -493,7 +509,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
 
     /// The inherited class that `redeclare model extends M` takes the place of and extends (MLS 7.3.1): the declaration,
     /// or the redeclaration nearest to it, below the one that is given.
-    fn replaced_class(&mut self, ast: &'a ast::Class, parent: View) -> Option<ClassRef<'a>> {
+    fn replaced_class(&mut self, ast: &'a ast::Class, parent: LookupContext) -> Option<ClassRef<'a>> {
         let mut scope = parent.scope;
         let mut holder = self.instance.scope(scope).template.clone();
         if !holder.by_name.contains_key(&ast.name.name) {
@@ -504,20 +520,21 @@ impl<'a> NameLookup<'_, 'a, '_> {
             holder = self.instance.scope(scope).template.clone();
         }
         let element = &holder.elements[*holder.by_name.get(&ast.name.name)? as usize];
-        let Kind::Class(declared) = element.kind else { return None };
-        let own = |s: &Source<'a>| matches!(s.what, What::Class(c) if std::ptr::eq(c, ast));
+        let TemplateElementKind::Class(declared) = element.kind else { return None };
+        let own =
+            |s: &ExtendsModification<'a>| matches!(s.what, ExtendsModificationKind::Class(c) if std::ptr::eq(c, ast));
         let below = element.modified.iter().position(own)? + 1;
         let redeclared = element.modified[below..].iter().find_map(|s| match s.what {
-            What::Class(c) => Some((c, s.base)),
-            What::Argument(a) => match &a.kind {
-                ArgumentKind::Class(c) => Some((&**c, s.base)),
+            ExtendsModificationKind::Class(c) => Some((c, s.base)),
+            ExtendsModificationKind::Argument(a) => match &a.kind {
+                ModificationArgumentKind::Class(c) => Some((&**c, s.base)),
                 _ => None,
             },
-            What::Component(_) => None,
+            ExtendsModificationKind::Component(_) => None,
         });
         let (class, base) = redeclared.unwrap_or((declared, element.base));
         let class = self.instance.library.enter(class, Some(holder.bases[base as usize].class));
-        Some(ClassRef { class, parent: View { scope, base }, args: Rc::from([]) })
+        Some(ClassRef { class, parent: LookupContext { scope, base }, args: Rc::from([]) })
     }
 
     /// Selective extension (Modelica 3.6, 7.4): `extends B(break x)` leaves out `x` and its connections.
@@ -563,13 +580,13 @@ pub fn same_pair(a: (&ast::Expr, &ast::Expr), b: (&ast::Expr, &ast::Expr)) -> bo
 }
 
 /// Whether two declarations of one name say the same, as inheriting an element twice requires (MLS 5.6.1.2).
-fn same_declaration(a: Kind<'_>, b: Kind<'_>) -> bool {
+fn same_declaration(a: TemplateElementKind<'_>, b: TemplateElementKind<'_>) -> bool {
     match (a, b) {
-        (Kind::Component(a), Kind::Component(b)) => {
+        (TemplateElementKind::Component(a), TemplateElementKind::Component(b)) => {
             let last = |p: &ast::Path| p.parts.last().map(|i| i.name);
             last(&a.class) == last(&b.class) && a.prefix == b.prefix && a.subscripts.len() == b.subscripts.len()
         }
-        (Kind::Class(a), Kind::Class(b)) => std::ptr::eq(a, b) || same_short_class(a, b),
+        (TemplateElementKind::Class(a), TemplateElementKind::Class(b)) => std::ptr::eq(a, b) || same_short_class(a, b),
         _ => false,
     }
 }
@@ -582,9 +599,11 @@ fn same_short_class(a: &ast::Class, b: &ast::Class) -> bool {
 }
 
 /// Whether a modifier of an element says what another one says already.
-fn says_the_same(a: &ast::Argument, b: &ast::Argument) -> bool {
-    let (ArgumentKind::Modify { path: p, modification: x, .. }, ArgumentKind::Modify { path: q, modification: y, .. }) =
-        (&a.kind, &b.kind)
+fn says_the_same(a: &ast::ModificationArgument, b: &ast::ModificationArgument) -> bool {
+    let (
+        ModificationArgumentKind::Modify { path: p, modification: x, .. },
+        ModificationArgumentKind::Modify { path: q, modification: y, .. },
+    ) = (&a.kind, &b.kind)
     else {
         return false;
     };

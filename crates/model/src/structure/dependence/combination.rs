@@ -1,51 +1,53 @@
 //! A combination of equations as an equation.
 
-use super::super::draft::{Draft, Role};
-use super::super::pantelides::Reduction;
-use super::super::parameters::{self, Known};
-use super::Jacobian;
-use super::elimination::Combination;
-use super::linear::{Factor, Linear};
-use super::offsets::Place;
-use super::symbolic::{self, Sum};
-use crate::flat::Equation;
+use super::super::draft::{DaeDraft, SystemRole};
+use super::super::pantelides::IndexReduction;
+use super::super::parameters::{self, SignAnalysis};
+use super::SystemJacobian;
+use super::elimination::RowCombination;
+use super::linear::{LinearForm, Monomial};
+use super::offsets::ChainPosition;
+use super::symbolic::{self, MonomialSum};
+use crate::flat::FlatEquation;
 use bramah_expr::{ExprId, Exprs};
 use bramah_syntax::diag::Diagnostic;
 
 /// The sum of some equations, each differentiated so often that their derivatives of highest order cancel.
-pub(super) struct Combined {
+pub(super) struct EquationCombination {
     /// The rows of the Jacobian that take part.
     pub rows: Vec<usize>,
     /// The one whose place the sum takes.
     pub replaced: usize,
     /// Unknowns and their derivatives with their factors.
-    terms: Vec<(Place, Factor)>,
+    terms: Vec<(ChainPosition, Monomial)>,
     /// All other terms, how often they are differentiated, and their factors.
-    rest: Vec<((ExprId, u32), Factor)>,
+    rest: Vec<((ExprId, u32), Monomial)>,
 }
 
-impl Combined {
+impl EquationCombination {
     /// `None` where the rows depend on each other by values only: of what changes, or of parameters that may not be fixed.
     pub fn new(
-        draft: &mut Draft,
-        known: &mut Known,
-        (jacobian, reduction): (&Jacobian, &Reduction),
-        found: &Combination,
+        draft: &mut DaeDraft,
+        known: &mut SignAnalysis,
+        (jacobian, reduction): (&SystemJacobian, &IndexReduction),
+        found: &RowCombination,
         fixable: bool,
     ) -> Option<Self> {
         let rows: Vec<usize> = found.iter().map(|term| term.0).collect();
-        let mut linear: Vec<Linear> = rows.iter().map(|&row| jacobian.linear(draft, known, reduction, row)).collect();
+        let mut linear: Vec<LinearForm> =
+            rows.iter().map(|&row| jacobian.linear(draft, known, reduction, row)).collect();
         let factors = factors(draft, known, jacobian, found, &mut linear, fixable)?;
         let offsets = || rows.iter().map(|&row| jacobian.offsets[row]);
         let least = offsets().min()?;
         let mut may_be = |i: &usize| {
-            let [factor]: &[Factor] = &factors[*i] else { return false };
+            let [factor]: &[Monomial] = &factors[*i] else { return false };
             jacobian.offsets[rows[*i]] == least && factor.expressions().all(|e| known.is_nonzero(&draft.exprs, e))
         };
-        let is_number = |i: &usize| factors[*i].iter().all(Factor::is_number);
+        let is_number = |i: &usize| factors[*i].iter().all(Monomial::is_number);
         let place = (0..rows.len()).rev().find(|i| is_number(i) && may_be(i));
         let place = place.or_else(|| (0..rows.len()).rev().find(may_be))?;
-        let mut made = Combined { replaced: rows[place], terms: Vec::new(), rest: Vec::new(), rows: rows.clone() };
+        let mut made =
+            EquationCombination { replaced: rows[place], terms: Vec::new(), rest: Vec::new(), rows: rows.clone() };
         for ((offset, linear), factors) in offsets().zip(&linear).zip(&factors) {
             let times = offset - least;
             // its derivative would have more terms
@@ -68,9 +70,9 @@ impl Combined {
     /// Whether no derivative of highest order is left, not in factors either.
     fn is_lower(
         &self,
-        draft: &Draft,
-        known: &mut Known,
-        (jacobian, reduction): (&Jacobian, &Reduction),
+        draft: &DaeDraft,
+        known: &mut SignAnalysis,
+        (jacobian, reduction): (&SystemJacobian, &IndexReduction),
         offset: u32,
     ) -> bool {
         let mut varying: Vec<ExprId> = Vec::new();
@@ -84,11 +86,11 @@ impl Combined {
     }
 
     /// What is left where that holds no unknown: 0 where the equations say the same, else what would have to be 0.
-    pub fn contradiction(&self, draft: &mut Draft) -> Option<ExprId> {
+    pub fn contradiction(&self, draft: &mut DaeDraft) -> Option<ExprId> {
         let mut sum = Exprs::ZERO;
         for ((e, times), factor) in &self.rest {
             let found = draft.exprs.dependencies(&[*e]);
-            let unknown = found.vars.iter().chain(&found.ders).any(|v| draft.role(*v) == Role::Continuous);
+            let unknown = found.vars.iter().chain(&found.ders).any(|v| draft.role(*v) == SystemRole::Continuous);
             if unknown || *times > 0 {
                 return None;
             }
@@ -100,10 +102,10 @@ impl Combined {
     }
 
     /// Puts the sum in the place of an equation.
-    pub fn write(&self, draft: &mut Draft, reduction: &mut Reduction, at: usize) -> Result<(), Diagnostic> {
+    pub fn write(&self, draft: &mut DaeDraft, reduction: &mut IndexReduction, at: usize) -> Result<(), Diagnostic> {
         let equation = draft.equations[at];
         let mut sum = Exprs::ZERO;
-        let mut add = |draft: &mut Draft, factor: &Factor, e: ExprId| {
+        let mut add = |draft: &mut DaeDraft, factor: &Monomial, e: ExprId| {
             let factor = factor.expression(&mut draft.exprs);
             let term = draft.exprs.mul(factor, e);
             sum = draft.exprs.add(sum, term);
@@ -119,13 +121,13 @@ impl Combined {
             }
             add(draft, factor, e);
         }
-        draft.equations[at] = Equation { lhs: sum, rhs: Exprs::ZERO, ..equation };
+        draft.equations[at] = FlatEquation { lhs: sum, rhs: Exprs::ZERO, ..equation };
         Ok(())
     }
 }
 
 /// Adds a term to the like one, if there is one; what cancels goes.
-fn add_to<T: PartialEq>(terms: &mut Vec<(T, Factor)>, of: T, factor: Factor) {
+fn add_to<T: PartialEq>(terms: &mut Vec<(T, Monomial)>, of: T, factor: Monomial) {
     let Some(at) = terms.iter().position(|t| t.0 == of && t.1.is_like(&factor)) else {
         return terms.push((of, factor));
     };
@@ -138,17 +140,17 @@ fn add_to<T: PartialEq>(terms: &mut Vec<(T, Factor)>, of: T, factor: Factor) {
 /// The factors by which rows add up to 0 whatever their expressions are worth. Where they do so only with the parameters as
 /// they are, these are fixed if they may be.
 fn factors(
-    draft: &mut Draft,
-    known: &mut Known,
-    jacobian: &Jacobian,
-    found: &Combination,
-    linear: &mut [Linear],
+    draft: &mut DaeDraft,
+    known: &mut SignAnalysis,
+    jacobian: &SystemJacobian,
+    found: &RowCombination,
+    linear: &mut [LinearForm],
     fixable: bool,
-) -> Option<Vec<Sum>> {
-    let rows: Vec<Vec<(u32, &Factor)>> =
+) -> Option<Vec<MonomialSum>> {
+    let rows: Vec<Vec<(u32, &Monomial)>> =
         found.iter().zip(&*linear).map(|(&(row, _), linear)| jacobian.entries(row, linear)).collect();
     let expressions: Vec<ExprId> = rows.iter().flatten().flat_map(|(_, factor)| factor.expressions()).collect();
-    let numbers = || found.iter().map(|&(_, factor)| vec![Factor::number(factor)]).collect();
+    let numbers = || found.iter().map(|&(_, factor)| vec![Monomial::number(factor)]).collect();
     if expressions.is_empty() {
         return Some(numbers());
     }
@@ -162,7 +164,7 @@ fn factors(
     parameters::fix(draft, &parameters);
     for factor in linear.iter_mut().flat_map(|l| &mut l.terms).map(|term| &mut term.1) {
         if factor.expressions().all(|e| known.value(&draft.exprs, e).is_some()) {
-            *factor = Factor::number(factor.value(draft, known));
+            *factor = Monomial::number(factor.value(draft, known));
         }
     }
     Some(numbers())

@@ -11,14 +11,14 @@ pub(super) const CANCELLED: f64 = 1e-10;
 const LARGE: f64 = 0.1;
 
 /// A row: columns, ascending, with their values.
-pub(super) type Row = Vec<(u32, f64)>;
+pub(super) type EliminationRow = Vec<(u32, f64)>;
 
 /// Rows, ascending, that add up to 0 with these factors; all but one of them are independent.
-pub(super) type Combination = Vec<(usize, f64)>;
+pub(super) type RowCombination = Vec<(usize, f64)>;
 
 /// The combinations of rows that vanish, as many as there are rows too many.
-pub(super) fn vanishing(rows: &[Row], columns: usize) -> Vec<Combination> {
-    let mut elimination = Elimination::new(rows, columns);
+pub(super) fn vanishing(rows: &[EliminationRow], columns: usize) -> Vec<RowCombination> {
+    let mut elimination = NumericElimination::new(rows, columns);
     while let Some((row, column)) = elimination.next_pivot() {
         elimination.eliminate(row, column);
     }
@@ -27,8 +27,8 @@ pub(super) fn vanishing(rows: &[Row], columns: usize) -> Vec<Combination> {
 }
 
 /// The last row of each combination that vanishes, each once: one row may be the last of several.
-pub(super) fn following(rows: &[Row], columns: usize) -> Vec<usize> {
-    let last = |combination: Combination| combination.last().map(|term| term.0);
+pub(super) fn following(rows: &[EliminationRow], columns: usize) -> Vec<usize> {
+    let last = |combination: RowCombination| combination.last().map(|term| term.0);
     let mut found: Vec<usize> = vanishing(rows, columns).into_iter().filter_map(last).collect();
     found.sort_unstable();
     found.dedup();
@@ -37,9 +37,9 @@ pub(super) fn following(rows: &[Row], columns: usize) -> Vec<usize> {
 
 /// Gaussian elimination of the column that the fewest rows hold: one that a single row holds takes that row out for nothing,
 /// so that in most models little is left to do.
-struct Elimination {
+struct NumericElimination {
     /// What is left of each row, scaled to a largest entry of 1.
-    rows: Vec<Row>,
+    rows: Vec<EliminationRow>,
     scale: Vec<f64>,
     /// Whether a row has not been a pivot yet.
     active: Vec<bool>,
@@ -56,17 +56,19 @@ struct Elimination {
     pivots: Vec<u32>,
 }
 
-impl Elimination {
-    fn new(rows: &[Row], columns: usize) -> Self {
-        let largest = |row: &Row| row.iter().fold(0.0, |m: f64, e| m.max(e.1.abs()));
+impl NumericElimination {
+    fn new(rows: &[EliminationRow], columns: usize) -> Self {
+        let largest = |row: &EliminationRow| row.iter().fold(0.0, |m: f64, e| m.max(e.1.abs()));
         let scale: Vec<f64> = rows.iter().map(|row| if row.is_empty() { 1.0 } else { largest(row) }).collect();
-        let scaled = |(row, scale): (&Row, &f64)| -> Row { row.iter().map(|&(c, v)| (c, v / scale)).collect() };
+        let scaled = |(row, scale): (&EliminationRow, &f64)| -> EliminationRow {
+            row.iter().map(|&(c, v)| (c, v / scale)).collect()
+        };
         let mut users: Vec<Vec<u32>> = vec![Vec::new(); columns];
         for (r, row) in (0..).zip(rows) {
             row.iter().for_each(|&(c, _)| users[c as usize].push(r));
         }
         let count: Vec<usize> = users.iter().map(Vec::len).collect();
-        Elimination {
+        NumericElimination {
             rows: rows.iter().zip(&scale).map(scaled).collect(),
             scale,
             active: vec![true; rows.len()],
@@ -131,9 +133,9 @@ impl Elimination {
     }
 
     /// Subtracts a multiple of a pivot; what cancels goes, and the eliminated column surely.
-    fn subtract(&mut self, row: u32, pivot: &Row, factor: f64, column: u32) {
+    fn subtract(&mut self, row: u32, pivot: &EliminationRow, factor: f64, column: u32) {
         let old = std::mem::take(&mut self.rows[row as usize]);
-        let mut made = Row::with_capacity(old.len() + pivot.len());
+        let mut made = EliminationRow::with_capacity(old.len() + pivot.len());
         let (mut a, mut b) = (old.iter().peekable(), pivot.iter().peekable());
         loop {
             match (a.peek(), b.peek()) {
@@ -166,7 +168,7 @@ impl Elimination {
     }
 
     /// Traces what was subtracted from a row of which nothing is left back to the rows as they were.
-    fn combination(&self, row: usize) -> Combination {
+    fn combination(&self, row: usize) -> RowCombination {
         let mut open: BTreeMap<usize, f64> = BTreeMap::new();
         let subtract = |open: &mut BTreeMap<usize, f64>, of: usize, by: f64| {
             for &(pivot, factor) in &self.subtracted[of] {
@@ -196,14 +198,15 @@ mod tests {
 
     #[test]
     fn a_ring_of_differences_adds_up_to_nothing() {
-        let ring: Vec<Row> = vec![vec![(0, 1.0), (1, -1.0)], vec![(1, 1.0), (2, -1.0)], vec![(0, -1.0), (2, 1.0)]];
+        let ring: Vec<EliminationRow> =
+            vec![vec![(0, 1.0), (1, -1.0)], vec![(1, 1.0), (2, -1.0)], vec![(0, -1.0), (2, 1.0)]];
         assert_eq!(vanishing(&ring, 3), [vec![(0, 1.0), (1, 1.0), (2, 1.0)]]);
-        assert_eq!(vanishing(&ring[..2], 3), Vec::<Combination>::new());
+        assert_eq!(vanishing(&ring[..2], 3), Vec::<RowCombination>::new());
     }
 
     #[test]
     fn a_row_without_columns_vanishes_by_itself() {
-        assert_eq!(vanishing(&[Row::new()], 1), [vec![(0, 1.0)]]);
+        assert_eq!(vanishing(&[EliminationRow::new()], 1), [vec![(0, 1.0)]]);
     }
 
     #[test]
@@ -217,8 +220,9 @@ mod tests {
     #[test]
     fn rounded_thirds_of_a_turn_cancel() {
         let third = 2.0 * std::f64::consts::PI / 3.0;
-        let axis =
-            |of: fn(f64) -> f64, by: f64| -> Row { (0..3).map(|k| (k, by * of(f64::from(k) * third))).collect() };
+        let axis = |of: fn(f64) -> f64, by: f64| -> EliminationRow {
+            (0..3).map(|k| (k, by * of(f64::from(k) * third))).collect()
+        };
         // both axes, what they leave of three windings, and one winding
         let rows = vec![axis(f64::cos, 2.0 / 3.0), axis(|_| 1.0, 1.0 / 3.0), axis(f64::sin, 1.0), vec![(0, 1.0)]];
         let found = vanishing(&rows, 3);
@@ -236,7 +240,7 @@ mod tests {
         #[test]
         fn as_many_rows_vanish_as_the_rank_says(dense in matrices()) {
             let columns = dense[0].len();
-            let sparse: Vec<Row> = dense.iter().map(|row| {
+            let sparse: Vec<EliminationRow> = dense.iter().map(|row| {
                 row.iter().enumerate().filter(|(_, v)| **v != 0.0).map(|(c, v)| (c as u32, *v)).collect()
             }).collect();
             let found = vanishing(&sparse, columns);

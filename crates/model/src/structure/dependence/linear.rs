@@ -1,32 +1,32 @@
 //! Equations as sums: factors times unknowns and their derivatives, and a rest.
 
-use super::super::draft::Draft;
-use super::super::parameters::Known;
-use super::offsets::Place;
-use bramah_expr::{Binary, ExprId, Exprs, Node, Unary};
+use super::super::draft::DaeDraft;
+use super::super::parameters::SignAnalysis;
+use super::offsets::ChainPosition;
+use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction};
 
 /// A number times powers of expressions: of parameters, or of what changes, such as a density.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Factor {
+pub(super) struct Monomial {
     pub number: f64,
     /// Ascending; no exponent is 0.
     powers: Vec<(ExprId, i32)>,
 }
 
-impl Factor {
-    pub const ONE: Factor = Factor::number(1.0);
+impl Monomial {
+    pub const ONE: Monomial = Monomial::number(1.0);
 
     pub const fn number(number: f64) -> Self {
-        Factor { number, powers: Vec::new() }
+        Monomial { number, powers: Vec::new() }
     }
 
     #[cfg(test)]
     pub fn of(e: ExprId) -> Self {
-        Factor { number: 1.0, powers: vec![(e, 1)] }
+        Monomial { number: 1.0, powers: vec![(e, 1)] }
     }
 
     pub fn with_number(self, number: f64) -> Self {
-        Factor { number, ..self }
+        Monomial { number, ..self }
     }
 
     pub fn negative(mut self) -> Self {
@@ -35,7 +35,7 @@ impl Factor {
     }
 
     /// Times another one, or divided by it where `exponent` is -1.
-    pub fn times(mut self, other: &Factor, exponent: i32) -> Self {
+    pub fn times(mut self, other: &Monomial, exponent: i32) -> Self {
         self.number *= other.number.powi(exponent);
         other.powers.iter().for_each(|&(e, power)| self.raise(e, power * exponent));
         self
@@ -62,7 +62,7 @@ impl Factor {
     }
 
     /// Whether two of them differ by a number only.
-    pub fn is_like(&self, other: &Factor) -> bool {
+    pub fn is_like(&self, other: &Monomial) -> bool {
         self.powers == other.powers
     }
 
@@ -77,7 +77,7 @@ impl Factor {
 
     /// With the parameters as they stand in the model. What changes has some value that nothing else has, so that sums
     /// cancel only where the same expressions do.
-    pub fn value(&self, draft: &Draft, known: &mut Known) -> f64 {
+    pub fn value(&self, draft: &DaeDraft, known: &mut SignAnalysis) -> f64 {
         self.powers.iter().fold(self.number, |product, &(e, exponent)| {
             let some = || 1.0 + (f64::from(e.0 + 1) * 0.618_033_988_749_894_9).fract();
             product * known.value(&draft.exprs, e).unwrap_or_else(some).powi(exponent)
@@ -97,29 +97,29 @@ impl Factor {
 
 /// `lhs - rhs` of an equation.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Linear {
+pub(super) struct LinearForm {
     /// Unknowns and their derivatives with their factors; one may stand there more than once.
-    pub terms: Vec<(Place, Factor)>,
+    pub terms: Vec<(ChainPosition, Monomial)>,
     /// All other terms.
-    pub rest: Vec<(ExprId, Factor)>,
+    pub rest: Vec<(ExprId, Monomial)>,
 }
 
-impl Linear {
+impl LinearForm {
     /// `place` says which leaves are unknowns.
     pub fn new(
-        draft: &Draft,
-        known: &mut Known,
+        draft: &DaeDraft,
+        known: &mut SignAnalysis,
         [lhs, rhs]: [ExprId; 2],
-        place: impl Fn(Node) -> Option<Place>,
+        place: impl Fn(ExprNode) -> Option<ChainPosition>,
     ) -> Self {
         let pool = &draft.exprs;
         let mut is_number = |e: ExprId| pool.as_num(e).is_some() || known.value(pool, e).is_some();
         let is_unknown = |e: ExprId| match pool.node(e) {
-            Node::Unary(Unary::Neg, a) => place(pool.node(a)).is_some(),
+            ExprNode::Unary(UnaryFunction::Neg, a) => place(pool.node(a)).is_some(),
             node => place(node).is_some(),
         };
-        let mut found = Linear::default();
-        let mut open = vec![(rhs, Factor::ONE.negative()), (lhs, Factor::ONE)];
+        let mut found = LinearForm::default();
+        let mut open = vec![(rhs, Monomial::ONE.negative()), (lhs, Monomial::ONE)];
         while let Some((e, factor)) = open.pop() {
             let node = pool.node(e);
             if e == Exprs::ZERO {
@@ -130,10 +130,12 @@ impl Linear {
                 continue;
             }
             match node {
-                Node::Unary(Unary::Neg, a) => open.push((a, factor.negative())),
-                Node::Binary(Binary::Add, a, b) => open.extend([(b, factor.clone()), (a, factor)]),
-                Node::Binary(Binary::Sub, a, b) => open.extend([(b, factor.clone().negative()), (a, factor)]),
-                Node::Binary(Binary::Mul, a, b) => {
+                ExprNode::Unary(UnaryFunction::Neg, a) => open.push((a, factor.negative())),
+                ExprNode::Binary(BinaryFunction::Add, a, b) => open.extend([(b, factor.clone()), (a, factor)]),
+                ExprNode::Binary(BinaryFunction::Sub, a, b) => {
+                    open.extend([(b, factor.clone().negative()), (a, factor)])
+                }
+                ExprNode::Binary(BinaryFunction::Mul, a, b) => {
                     // numbers first; then what is multiplied with an unknown
                     let of = |other: ExprId, by: ExprId| (other, factor.clone().times_expression(pool, by, 1));
                     match (is_number(a), is_number(b), is_unknown(a), is_unknown(b)) {
@@ -144,7 +146,7 @@ impl Linear {
                         _ => found.rest.push((e, factor)),
                     }
                 }
-                Node::Binary(Binary::Div, a, b) if is_number(b) || is_unknown(a) && !is_unknown(b) => {
+                ExprNode::Binary(BinaryFunction::Div, a, b) if is_number(b) || is_unknown(a) && !is_unknown(b) => {
                     open.push((a, factor.times_expression(pool, b, -1)));
                 }
                 _ => found.rest.push((e, factor)),

@@ -19,40 +19,45 @@ mod linear;
 mod offsets;
 mod symbolic;
 
-use super::draft::Draft;
+use super::draft::DaeDraft;
 use super::messages;
-use super::pantelides::Reduction;
-use super::parameters::Known;
-use crate::flat::Equation;
-use bramah_expr::visit::Walk;
-use bramah_expr::{ExprId, Node, VarId};
+use super::pantelides::IndexReduction;
+use super::parameters::SignAnalysis;
+use crate::flat::FlatEquation;
+use bramah_expr::visit::NodeTraversal;
+use bramah_expr::{ExprId, ExprNode, VarId};
 use bramah_syntax::diag::Diagnostic;
-use combination::Combined;
-use elimination::Combination;
-use linear::{Factor, Linear};
-use offsets::{Offsets, Place};
+use combination::EquationCombination;
+use elimination::RowCombination;
+use linear::{LinearForm, Monomial};
+use offsets::{ChainPosition, DerivativeOffsets};
 
 /// The columns and rows of the continuous equations, after every hidden constraint has been written as one.
 ///
 /// `fixable` says whether parameters may be fixed with the structure where equations depend on each other by their values only.
 /// Errors: equations that say the same (E301, E302) or contradict each other (E303), constraints that cannot be
 /// differentiated (E304).
-pub(super) fn expose(draft: &mut Draft, known: &mut Known, fixable: bool) -> Result<Reduction, Diagnostic> {
+pub(super) fn expose(
+    draft: &mut DaeDraft,
+    known: &mut SignAnalysis,
+    fixable: bool,
+) -> Result<IndexReduction, Diagnostic> {
     let mut degrees = i64::MAX;
     loop {
-        let mut reduction = Reduction::new(draft);
+        let mut reduction = IndexReduction::new(draft);
         let places = offsets::places(&reduction);
         // what is no system is refused when it is reduced
-        let offsets = Offsets::new(&reduction, &places).filter(|found| found.degrees() < degrees);
+        let offsets = DerivativeOffsets::new(&reduction, &places).filter(|found| found.degrees() < degrees);
         let Some(offsets) = offsets else { return Ok(reduction) };
         degrees = offsets.degrees();
-        let jacobian = Jacobian::new(draft, known, &reduction, (places, offsets));
+        let jacobian = SystemJacobian::new(draft, known, &reduction, (places, offsets));
         let mut changed: Vec<usize> = Vec::new();
         for found in jacobian.vanishing() {
             if found.iter().any(|(row, _)| changed.contains(row)) {
                 continue;
             }
-            let Some(combined) = Combined::new(draft, known, (&jacobian, &reduction), &found, fixable) else {
+            let Some(combined) = EquationCombination::new(draft, known, (&jacobian, &reduction), &found, fixable)
+            else {
                 continue;
             };
             if let Some(left) = combined.contradiction(draft) {
@@ -70,15 +75,15 @@ pub(super) fn expose(draft: &mut Draft, known: &mut Known, fixable: bool) -> Res
 /// Equations, by their place, that follow from others before them with the parameters as they are. `column` says which
 /// leaves are unknowns; equations that are not linear in them take no part.
 pub(super) fn following(
-    draft: &Draft,
-    known: &mut Known,
-    equations: &[Equation],
-    column: impl Fn(Node) -> Option<u32>,
+    draft: &DaeDraft,
+    known: &mut SignAnalysis,
+    equations: &[FlatEquation],
+    column: impl Fn(ExprNode) -> Option<u32>,
 ) -> Vec<usize> {
-    let mut walk = Walk::default();
+    let mut walk = NodeTraversal::default();
     let (mut places, mut rows, mut columns) = (Vec::new(), Vec::new(), 0);
     for (i, equation) in equations.iter().enumerate() {
-        let linear = Linear::new(draft, known, [equation.lhs, equation.rhs], |leaf| Some((column(leaf)?, 0)));
+        let linear = LinearForm::new(draft, known, [equation.lhs, equation.rhs], |leaf| Some((column(leaf)?, 0)));
         let factors = linear.terms.iter().flat_map(|(_, factor)| factor.expressions());
         let others: Vec<ExprId> = linear.rest.iter().map(|term| term.0).chain(factors).collect();
         let mut is_linear = true;
@@ -86,7 +91,7 @@ pub(super) fn following(
             is_linear &= column(node).is_none();
             is_linear
         });
-        let entries: Vec<(u32, &Factor)> = linear.terms.iter().map(|((c, _), factor)| (*c, factor)).collect();
+        let entries: Vec<(u32, &Monomial)> = linear.terms.iter().map(|((c, _), factor)| (*c, factor)).collect();
         if let Some(row) = row(draft, known, &entries).filter(|_| is_linear) {
             columns = row.iter().fold(columns, |most, entry| most.max(entry.0 as usize + 1));
             places.push(i);
@@ -97,9 +102,9 @@ pub(super) fn following(
 }
 
 /// The system Jacobian of the equations that are linear in the derivatives of highest order.
-struct Jacobian {
+struct SystemJacobian {
     /// By column of the reduction.
-    places: Vec<Place>,
+    places: Vec<ChainPosition>,
     /// By chain: the order of its highest derivative.
     highest: Vec<u32>,
     /// Index into the draft's equations, by row.
@@ -107,22 +112,22 @@ struct Jacobian {
     /// How often the equation is differentiated, by row.
     offsets: Vec<u32>,
     /// Factors by chain, by row.
-    rows: Vec<elimination::Row>,
+    rows: Vec<elimination::EliminationRow>,
     /// By chain: whether an equation holds its highest derivative other than linearly.
     beyond: Vec<bool>,
 }
 
-impl Jacobian {
+impl SystemJacobian {
     fn new(
-        draft: &Draft,
-        known: &mut Known,
-        reduction: &Reduction,
-        (places, Offsets { rows: offsets, chains: highest }): (Vec<Place>, Offsets),
+        draft: &DaeDraft,
+        known: &mut SignAnalysis,
+        reduction: &IndexReduction,
+        (places, DerivativeOffsets { rows: offsets, chains: highest }): (Vec<ChainPosition>, DerivativeOffsets),
     ) -> Self {
         let beyond = vec![false; places.len()];
         let (equations, rows) = (Vec::new(), Vec::new());
-        let mut made = Jacobian { places, highest, equations, offsets: Vec::new(), rows, beyond };
-        let mut walk = Walk::default();
+        let mut made = SystemJacobian { places, highest, equations, offsets: Vec::new(), rows, beyond };
+        let mut walk = NodeTraversal::default();
         for (&equation, offset) in reduction.equations.iter().zip(offsets) {
             let linear = made.linear_form(draft, known, reduction, equation as usize);
             let mut within = |parts: Vec<ExprId>| {
@@ -150,58 +155,64 @@ impl Jacobian {
         made
     }
 
-    fn place(&self, draft: &Draft, reduction: &Reduction, leaf: Node) -> Option<Place> {
+    fn place(&self, draft: &DaeDraft, reduction: &IndexReduction, leaf: ExprNode) -> Option<ChainPosition> {
         reduction.column(draft, leaf).map(|c| self.places[c as usize])
     }
 
     /// Whether a derivative of an equation holds this one as a highest derivative.
-    fn is_highest(&self, (chain, order): Place, offset: u32) -> bool {
+    fn is_highest(&self, (chain, order): ChainPosition, offset: u32) -> bool {
         order + offset == self.highest[chain as usize]
     }
 
-    fn linear(&self, draft: &Draft, known: &mut Known, reduction: &Reduction, row: usize) -> Linear {
+    fn linear(&self, draft: &DaeDraft, known: &mut SignAnalysis, reduction: &IndexReduction, row: usize) -> LinearForm {
         self.linear_form(draft, known, reduction, self.equations[row])
     }
 
-    fn linear_form(&self, draft: &Draft, known: &mut Known, reduction: &Reduction, equation: usize) -> Linear {
+    fn linear_form(
+        &self,
+        draft: &DaeDraft,
+        known: &mut SignAnalysis,
+        reduction: &IndexReduction,
+        equation: usize,
+    ) -> LinearForm {
         let sides = [draft.equations[equation].lhs, draft.equations[equation].rhs];
-        Linear::new(draft, known, sides, |leaf| self.place(draft, reduction, leaf))
+        LinearForm::new(draft, known, sides, |leaf| self.place(draft, reduction, leaf))
     }
 
     /// The terms of a row that hold highest derivatives, by chain.
-    fn entries<'l>(&self, row: usize, linear: &'l Linear) -> Vec<(u32, &'l Factor)> {
+    fn entries<'l>(&self, row: usize, linear: &'l LinearForm) -> Vec<(u32, &'l Monomial)> {
         self.entries_at(self.offsets[row], linear)
     }
 
-    fn entries_at<'l>(&self, offset: u32, linear: &'l Linear) -> Vec<(u32, &'l Factor)> {
+    fn entries_at<'l>(&self, offset: u32, linear: &'l LinearForm) -> Vec<(u32, &'l Monomial)> {
         let highest = linear.terms.iter().filter(|(place, _)| self.is_highest(*place, offset));
         highest.map(|((chain, _), factor)| (*chain, factor)).collect()
     }
 
     /// Whether an expression in an equation with this offset holds a highest derivative.
-    fn holds_highest(&self, draft: &Draft, reduction: &Reduction, e: ExprId, offset: u32) -> bool {
+    fn holds_highest(&self, draft: &DaeDraft, reduction: &IndexReduction, e: ExprId, offset: u32) -> bool {
         let mut found = false;
-        Walk::default().each(&draft.exprs, &[e], |_, node| {
+        NodeTraversal::default().each(&draft.exprs, &[e], |_, node| {
             found |= self.place(draft, reduction, node).is_some_and(|place| self.is_highest(place, offset));
             !found
         });
         found
     }
 
-    fn vanishing(&self) -> Vec<Combination> {
+    fn vanishing(&self) -> Vec<RowCombination> {
         elimination::vanishing(&self.rows, self.places.len())
     }
 
     /// What is wrong where equations add up to nothing, or to what holds no unknown.
     fn explain(
         &self,
-        draft: &Draft,
-        known: &mut Known,
-        reduction: &Reduction,
+        draft: &DaeDraft,
+        known: &mut SignAnalysis,
+        reduction: &IndexReduction,
         rows: &[usize],
         left: ExprId,
     ) -> Diagnostic {
-        let equations: Vec<Equation> = rows.iter().map(|&row| draft.equations[self.equations[row]]).collect();
+        let equations: Vec<FlatEquation> = rows.iter().map(|&row| draft.equations[self.equations[row]]).collect();
         if let [only] = equations.as_slice() {
             return messages::cancelling(draft, only);
         }
@@ -216,21 +227,25 @@ impl Jacobian {
 
     /// Unknowns that can change together, by these parts, while every equation holds.
     fn free_combination(&self) -> Vec<(u32, f64)> {
-        let mut columns: Vec<elimination::Row> = vec![Vec::new(); self.places.len()];
+        let mut columns: Vec<elimination::EliminationRow> = vec![Vec::new(); self.places.len()];
         for (r, row) in self.rows.iter().enumerate() {
             row.iter().for_each(|&(chain, value)| columns[chain as usize].push((r as u32, value)));
         }
         let linear = |&c: &usize| !self.beyond[c] && !columns[c].is_empty();
         let chains: Vec<usize> = (0..columns.len()).filter(linear).collect();
-        let columns: Vec<elimination::Row> = chains.iter().map(|&c| columns[c].clone()).collect();
+        let columns: Vec<elimination::EliminationRow> = chains.iter().map(|&c| columns[c].clone()).collect();
         let found = elimination::vanishing(&columns, self.rows.len()).into_iter().next().unwrap_or_default();
         found.into_iter().map(|(i, part)| (chains[i] as u32, part)).collect()
     }
 }
 
 /// The sums of the factors of each chain; `None` where one of them is 0 by the value of a parameter.
-fn row(draft: &Draft, known: &mut Known, entries: &[(u32, &Factor)]) -> Option<elimination::Row> {
-    let mut row = elimination::Row::new();
+fn row(
+    draft: &DaeDraft,
+    known: &mut SignAnalysis,
+    entries: &[(u32, &Monomial)],
+) -> Option<elimination::EliminationRow> {
+    let mut row = elimination::EliminationRow::new();
     for (chain, factor) in entries {
         let value = factor.value(draft, known);
         if value == 0.0 || !value.is_finite() {

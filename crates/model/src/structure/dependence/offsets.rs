@@ -4,12 +4,12 @@
 //! most `d_j - c_i`, and equal to it along a matching (J. Pryce, A simple structural analysis method for DAEs, BIT 41,
 //! 2001). Here they are counted by Pantelides' steps without differentiating anything.
 
-use super::super::incidence::{Incidence, NONE};
-use super::super::matching::{Augmenter, Matching};
-use super::super::pantelides::Reduction;
+use super::super::incidence::{IncidenceMatrix, NONE};
+use super::super::matching::{Matching, PathAugmenter};
+use super::super::pantelides::IndexReduction;
 
-/// Rows and chains (a variable with its derivatives) as [`Reduction`] numbers them; a chain goes by its lowest column.
-pub(super) struct Offsets {
+/// Rows and chains (a variable with its derivatives) as [`IndexReduction`] numbers them; a chain goes by its lowest column.
+pub(super) struct DerivativeOffsets {
     /// How often each row is differentiated.
     pub rows: Vec<u32>,
     /// By column: the order of the highest derivative of the chain that begins there.
@@ -17,10 +17,10 @@ pub(super) struct Offsets {
 }
 
 /// The chain of an unknown, and how many derivatives up it stands.
-pub(super) type Place = (u32, u32);
+pub(super) type ChainPosition = (u32, u32);
 
 /// By column.
-pub(super) fn places(reduction: &Reduction) -> Vec<Place> {
+pub(super) fn places(reduction: &IndexReduction) -> Vec<ChainPosition> {
     let mut places = vec![(NONE, 0); reduction.columns.len()];
     let lowest = (0..places.len()).filter(|&c| reduction.columns[c].integral == NONE);
     for chain in lowest {
@@ -33,15 +33,15 @@ pub(super) fn places(reduction: &Reduction) -> Vec<Place> {
     places
 }
 
-impl Offsets {
+impl DerivativeOffsets {
     /// `None` where equations cannot have an unknown each however often they are differentiated: unknowns that cancel.
-    pub fn new(reduction: &Reduction, places: &[Place]) -> Option<Self> {
+    pub fn new(reduction: &IndexReduction, places: &[ChainPosition]) -> Option<Self> {
         let mut chains = vec![0; places.len()];
         for &(chain, order) in places {
             chains[chain as usize] = order.max(chains[chain as usize]);
         }
-        let signature = Signature::new(reduction, places);
-        let mut found = Offsets { rows: vec![0; reduction.equations.len()], chains };
+        let signature = SignatureMatrix::new(reduction, places);
+        let mut found = DerivativeOffsets { rows: vec![0; reduction.equations.len()], chains };
         let highest = reduction.first_matching();
         let mut matching = Matching::empty(found.rows.len(), places.len());
         for (row, &column) in highest.column_of.iter().enumerate().filter(|(_, c)| **c != NONE) {
@@ -57,10 +57,10 @@ impl Offsets {
     }
 
     /// Until every row has a chain of its own in which its order is the highest that it can be; false where that never is, as
-    /// in [`Reduction::reduce`].
-    fn raise(&mut self, signature: &Signature, matching: &mut Matching) -> bool {
+    /// in [`IndexReduction::reduce`].
+    fn raise(&mut self, signature: &SignatureMatrix, matching: &mut Matching) -> bool {
         let most = self.chains.len() as u32;
-        let mut augmenter = Augmenter::default();
+        let mut augmenter = PathAugmenter::default();
         for row in 0..self.rows.len() as u32 {
             while matching.column_of[row as usize] == NONE {
                 let highest = |row: u32, position: usize, chain: u32| {
@@ -81,15 +81,15 @@ impl Offsets {
 }
 
 /// The chains of each row with their highest orders in it.
-struct Signature {
-    chains: Incidence,
+struct SignatureMatrix {
+    chains: IncidenceMatrix,
     starts: Vec<usize>,
     orders: Vec<u32>,
 }
 
-impl Signature {
-    fn new(reduction: &Reduction, places: &[Place]) -> Self {
-        let mut made = Signature { chains: Incidence::default(), starts: Vec::new(), orders: Vec::new() };
+impl SignatureMatrix {
+    fn new(reduction: &IndexReduction, places: &[ChainPosition]) -> Self {
+        let mut made = SignatureMatrix { chains: IncidenceMatrix::default(), starts: Vec::new(), orders: Vec::new() };
         let mut row_places = Vec::new();
         for row in 0..reduction.equations.len() as u32 {
             row_places.clear();

@@ -3,7 +3,7 @@
 //! integer-preserving Gaussian elimination, Math. Comp. 22, 1968, has the idea).
 
 use super::elimination::CANCELLED;
-use super::linear::Factor;
+use super::linear::Monomial;
 
 /// More rows than this are too many for elimination by hand.
 const MOST_ROWS: usize = 100;
@@ -11,15 +11,15 @@ const MOST_ROWS: usize = 100;
 const MOST_TERMS: usize = 50;
 
 /// A sum of unlike factors; 0 without any.
-pub(super) type Sum = Vec<Factor>;
+pub(super) type MonomialSum = Vec<Monomial>;
 
 /// The factor of each of these rows (chains with factors), of which all but one are independent; `None` where they depend
 /// on each other by the values of expressions only, or where it would take too much.
-pub(super) fn factors(rows: &[Vec<(u32, &Factor)>]) -> Option<Vec<Sum>> {
+pub(super) fn factors(rows: &[Vec<(u32, &Monomial)>]) -> Option<Vec<MonomialSum>> {
     if rows.len() > MOST_ROWS {
         return None;
     }
-    let mut elimination = Elimination::new(rows);
+    let mut elimination = SymbolicElimination::new(rows);
     while let Some((row, column)) = elimination.next_pivot() {
         elimination.eliminate(row, column)?;
     }
@@ -28,44 +28,47 @@ pub(super) fn factors(rows: &[Vec<(u32, &Factor)>]) -> Option<Vec<Sum>> {
     complete.then(|| with_most_numbers(parts))
 }
 
-struct Elimination {
+struct SymbolicElimination {
     /// Rows that have not been a pivot.
-    open: Vec<Row>,
+    open: Vec<SymbolicRow>,
     width: usize,
 }
 
-struct Row {
+struct SymbolicRow {
     /// By column.
-    entries: Vec<Sum>,
+    entries: Vec<MonomialSum>,
     /// By row as given: what this one consists of.
-    parts: Vec<Sum>,
+    parts: Vec<MonomialSum>,
 }
 
-impl Elimination {
-    fn new(rows: &[Vec<(u32, &Factor)>]) -> Self {
+impl SymbolicElimination {
+    fn new(rows: &[Vec<(u32, &Monomial)>]) -> Self {
         let mut chains: Vec<u32> = rows.iter().flatten().map(|entry| entry.0).collect();
         chains.sort_unstable();
         chains.dedup();
-        let row = |(r, given): (usize, &Vec<(u32, &Factor)>)| {
-            let mut row = Row { entries: vec![Sum::new(); chains.len()], parts: vec![Sum::new(); rows.len()] };
-            row.parts[r].push(Factor::ONE);
+        let row = |(r, given): (usize, &Vec<(u32, &Monomial)>)| {
+            let mut row = SymbolicRow {
+                entries: vec![MonomialSum::new(); chains.len()],
+                parts: vec![MonomialSum::new(); rows.len()],
+            };
+            row.parts[r].push(Monomial::ONE);
             for (column, chain) in chains.iter().enumerate() {
                 let of_chain = given.iter().filter(|entry| entry.0 == *chain);
                 of_chain.for_each(|(_, factor)| add(&mut row.entries[column], (*factor).clone()));
             }
             row
         };
-        Elimination { open: rows.iter().enumerate().map(row).collect(), width: chains.len() }
+        SymbolicElimination { open: rows.iter().enumerate().map(row).collect(), width: chains.len() }
     }
 
     /// A number before a product before a sum; among these the one that fills the fewest entries.
     fn next_pivot(&self) -> Option<(usize, usize)> {
         let users = |column: usize| self.open.iter().filter(|row| !row.entries[column].is_empty()).count();
         let others: Vec<usize> = (0..self.width).map(|column| users(column).saturating_sub(1)).collect();
-        let cost = |row: &Row, column: usize| {
+        let cost = |row: &SymbolicRow, column: usize| {
             let entry = &row.entries[column];
             let length = row.entries.iter().filter(|entry| !entry.is_empty()).count() - 1;
-            (entry.len(), !entry.iter().all(Factor::is_number), length * others[column])
+            (entry.len(), !entry.iter().all(Monomial::is_number), length * others[column])
         };
         let open = self.open.iter().enumerate();
         let candidates = open.flat_map(|(r, row)| {
@@ -85,10 +88,10 @@ impl Elimination {
             }
             // a single term divides; what is longer multiplies the row instead
             let (by, times) = match pivot.entries[column].as_slice() {
-                [single] => (product(&entry, &[Factor::ONE.times(single, -1)]), None),
+                [single] => (product(&entry, &[Monomial::ONE.times(single, -1)]), None),
                 several => (entry, Some(several.to_vec())),
             };
-            let by: Sum = by.into_iter().map(Factor::negative).collect();
+            let by: MonomialSum = by.into_iter().map(Monomial::negative).collect();
             let others =
                 pivot.entries.iter().enumerate().map(|(c, part)| if c == column { &[] } else { part.as_slice() });
             let pairs = row.entries.iter_mut().zip(others);
@@ -107,8 +110,8 @@ impl Elimination {
     }
 }
 
-fn product(a: &[Factor], b: &[Factor]) -> Sum {
-    let mut made = Sum::new();
+fn product(a: &[Monomial], b: &[Monomial]) -> MonomialSum {
+    let mut made = MonomialSum::new();
     for left in a {
         b.iter().for_each(|right| add(&mut made, left.clone().times(right, 1)));
     }
@@ -116,7 +119,7 @@ fn product(a: &[Factor], b: &[Factor]) -> Sum {
 }
 
 /// Adds to the like term, if there is one; what cancels goes.
-fn add(to: &mut Sum, factor: Factor) {
+fn add(to: &mut MonomialSum, factor: Monomial) {
     let Some(at) = to.iter().position(|term| term.is_like(&factor)) else { return to.push(factor) };
     match sum(&to[at], &factor) {
         Some(sum) => to[at] = sum,
@@ -125,18 +128,18 @@ fn add(to: &mut Sum, factor: Factor) {
 }
 
 /// The sum of two like factors; `None` where they cancel.
-pub(super) fn sum(a: &Factor, b: &Factor) -> Option<Factor> {
+pub(super) fn sum(a: &Monomial, b: &Monomial) -> Option<Monomial> {
     let number = a.number + b.number;
     let cancels = number.abs() <= CANCELLED * (a.number.abs() + b.number.abs());
     (!cancels).then(|| a.clone().with_number(number))
 }
 
 /// A multiple of these factors in which as many as possible are numbers.
-fn with_most_numbers(sums: Vec<Sum>) -> Vec<Sum> {
+fn with_most_numbers(sums: Vec<MonomialSum>) -> Vec<MonomialSum> {
     let single = || sums.iter().filter_map(|sum| if let [factor] = sum.as_slice() { Some(factor) } else { None });
-    let like = |f: &Factor| single().filter(|other| other.is_like(f)).count();
+    let like = |f: &Monomial| single().filter(|other| other.is_like(f)).count();
     let Some(common) = single().max_by_key(|f| like(f)).cloned() else { return sums };
-    let divided = |sum: Sum| sum.into_iter().map(|f| f.times(&common, -1)).collect();
+    let divided = |sum: MonomialSum| sum.into_iter().map(|f| f.times(&common, -1)).collect();
     sums.into_iter().map(divided).collect()
 }
 
@@ -146,15 +149,15 @@ mod tests {
     use bramah_expr::ExprId;
 
     /// Laurent polynomials of a few symbols, by the symbols' exponents.
-    fn symbol(id: u32, exponent: i32) -> Factor {
-        Factor::ONE.times(&Factor::of(ExprId(id)), exponent)
+    fn symbol(id: u32, exponent: i32) -> Monomial {
+        Monomial::ONE.times(&Monomial::of(ExprId(id)), exponent)
     }
 
     #[test]
     fn conductances_at_a_node_add_up_to_a_sum() {
         // currents i, j, k through a, b, c from a node x: x = a*i, x = b*j, x = -c*k, i + j = k, and i + j = what flows in
         let (a, b, c) = (symbol(1, 1), symbol(2, 1), symbol(3, 1));
-        let (minus, one) = (Factor::ONE.negative(), Factor::ONE);
+        let (minus, one) = (Monomial::ONE.negative(), Monomial::ONE);
         let rows = [
             vec![(0, &one), (1, &a)],
             vec![(0, &one), (2, &b)],
@@ -164,7 +167,7 @@ mod tests {
         ];
         let found = factors(&rows).expect("they depend on each other");
         for chain in 0..4 {
-            let mut left = Sum::new();
+            let mut left = MonomialSum::new();
             for (row, factor) in rows.iter().zip(&found) {
                 for (_, entry) in row.iter().filter(|entry| entry.0 == chain) {
                     product(factor, std::slice::from_ref(*entry)).into_iter().for_each(|term| add(&mut left, term));

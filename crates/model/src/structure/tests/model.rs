@@ -1,7 +1,7 @@
 //! Small flat models for tests, written as text.
 
 use crate::flat::*;
-use bramah_expr::{ExprId, Exprs, Node, Rel, Unary, VarId};
+use bramah_expr::{ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction, VarId};
 use bramah_syntax::diag::{FileId, Span};
 
 /// A flat model under construction. Names in expressions must be declared before.
@@ -9,8 +9,8 @@ pub struct Model {
     pub flat: FlatModel,
 }
 
-fn origin(instance: u32, kind: OriginKind) -> Origin {
-    Origin { span: Span { file: FileId(0), start: 0, end: 0 }, instance, kind }
+fn origin(instance: u32, kind: OriginKind) -> ElementOrigin {
+    ElementOrigin { span: Span { file: FileId(0), start: 0, end: 0 }, instance, kind }
 }
 
 impl Model {
@@ -33,11 +33,11 @@ impl Model {
         self.flat.instances.iter().position(|i| i.name == name).unwrap_or(0) as u32
     }
 
-    fn declare(&mut self, name: &str, ty: Type, variability: Variability) -> VarId {
+    fn declare(&mut self, name: &str, ty: ScalarType, variability: Variability) -> VarId {
         let instance = name.rsplit_once('.').map_or(0, |(outer, _)| self.instance_named(outer));
-        self.flat.variables.push(Variable {
+        self.flat.variables.push(FlatVariable {
             fixed: variability <= Variability::Parameter,
-            ..Variable::plain(name, ty, variability, origin(instance, OriginKind::Declared))
+            ..FlatVariable::plain(name, ty, variability, origin(instance, OriginKind::Declared))
         });
         VarId(self.flat.variables.len() as u32 - 1)
     }
@@ -45,14 +45,14 @@ impl Model {
     /// Real variables.
     pub fn reals(&mut self, names: &str) -> &mut Self {
         for name in names.split_whitespace() {
-            self.declare(name, Type::Real, Variability::Continuous);
+            self.declare(name, ScalarType::Real, Variability::Continuous);
         }
         self
     }
 
     pub fn flows(&mut self, names: &str) -> &mut Self {
         for name in names.split_whitespace() {
-            let v = self.declare(name, Type::Real, Variability::Continuous);
+            let v = self.declare(name, ScalarType::Real, Variability::Continuous);
             self.flat.variables[v.index()].flow = true;
         }
         self
@@ -60,28 +60,28 @@ impl Model {
 
     pub fn booleans(&mut self, names: &str) -> &mut Self {
         for name in names.split_whitespace() {
-            self.declare(name, Type::Boolean, Variability::Discrete);
+            self.declare(name, ScalarType::Boolean, Variability::Discrete);
         }
         self
     }
 
     pub fn integers(&mut self, names: &str) -> &mut Self {
         for name in names.split_whitespace() {
-            self.declare(name, Type::Integer, Variability::Discrete);
+            self.declare(name, ScalarType::Integer, Variability::Discrete);
         }
         self
     }
 
     pub fn discretes(&mut self, names: &str) -> &mut Self {
         for name in names.split_whitespace() {
-            self.declare(name, Type::Real, Variability::Discrete);
+            self.declare(name, ScalarType::Real, Variability::Discrete);
         }
         self
     }
 
     pub fn inputs(&mut self, names: &str) -> &mut Self {
         for name in names.split_whitespace() {
-            let v = self.declare(name, Type::Real, Variability::Continuous);
+            let v = self.declare(name, ScalarType::Real, Variability::Continuous);
             self.flat.variables[v.index()].input = true;
         }
         self
@@ -91,7 +91,7 @@ impl Model {
     pub fn parameters(&mut self, bindings: &str) -> &mut Self {
         let bindings: Vec<(&str, &str)> = pieces(bindings).map(|b| b.split_once('=').expect("a binding")).collect();
         for (name, _) in &bindings {
-            self.declare(name.trim(), Type::Real, Variability::Parameter);
+            self.declare(name.trim(), ScalarType::Real, Variability::Parameter);
         }
         for (name, value) in &bindings {
             let value = self.expr(value);
@@ -138,7 +138,7 @@ impl Model {
         let instance = self.instance_named(instance);
         for piece in pieces(text) {
             let (lhs, rhs) = self.sides(piece);
-            self.flat.equations.push(Equation { lhs, rhs, origin: origin(instance, kind) });
+            self.flat.equations.push(FlatEquation { lhs, rhs, origin: origin(instance, kind) });
         }
         self
     }
@@ -148,7 +148,7 @@ impl Model {
             let (lhs, rhs) = self.sides(piece);
             let mut origin = origin(0, OriginKind::Declared);
             origin.span.start = 1000 + self.flat.initial_equations.len() as u32;
-            self.flat.initial_equations.push(Equation { lhs, rhs, origin });
+            self.flat.initial_equations.push(FlatEquation { lhs, rhs, origin });
         }
         self
     }
@@ -163,7 +163,7 @@ impl Model {
                 actions: pieces(actions).map(|a| self.action(a)).collect(),
             })
             .collect();
-        self.flat.whens.push(When { branches, origin });
+        self.flat.whens.push(WhenClause { branches, origin });
         self
     }
 
@@ -313,7 +313,7 @@ impl Parser<'_> {
         }
         let p = &mut self.model.flat.exprs;
         let variable = |p: &Exprs| match p.node(args[0]) {
-            Node::Var(v) => v,
+            ExprNode::Var(v) => v,
             other => panic!("{word} of {other:?}"),
         };
         match word {
@@ -325,13 +325,13 @@ impl Parser<'_> {
                 let v = variable(p);
                 p.pre(v)
             }
-            "initial" => p.intern(Node::Initial),
+            "initial" => p.intern(ExprNode::Initial),
             "sample" => p.sample(args[0], args[1]),
             "noEvent" => without_event(p, args[0]),
             "floor" => p.event_floor(args[0]),
-            "sin" => p.unary(Unary::Sin, args[0]),
-            "cos" => p.unary(Unary::Cos, args[0]),
-            "exp" => p.unary(Unary::Exp, args[0]),
+            "sin" => p.unary(UnaryFunction::Sin, args[0]),
+            "cos" => p.unary(UnaryFunction::Cos, args[0]),
+            "exp" => p.unary(UnaryFunction::Exp, args[0]),
             "sqrt" => p.sqrt(args[0]),
             _ => panic!("no function `{word}`"),
         }
@@ -340,8 +340,8 @@ impl Parser<'_> {
 
 fn without_event(p: &mut Exprs, e: ExprId) -> ExprId {
     match p.node(e) {
-        Node::EventRel(rel, a, b) => p.rel(rel, a, b),
-        Node::If(c, a, b) => {
+        ExprNode::EventRel(rel, a, b) => p.rel(rel, a, b),
+        ExprNode::If(c, a, b) => {
             let c = without_event(p, c);
             p.if_(c, a, b)
         }
@@ -353,12 +353,12 @@ fn binary(p: &mut Exprs, op: &str, a: ExprId, b: ExprId) -> ExprId {
     match op {
         "or" => p.or(a, b),
         "and" => p.and(a, b),
-        "<" => p.event_rel(Rel::Lt, a, b),
-        "<=" => p.event_rel(Rel::Le, a, b),
-        ">" => p.event_rel(Rel::Gt, a, b),
-        ">=" => p.event_rel(Rel::Ge, a, b),
-        "==" => p.event_rel(Rel::Eq, a, b),
-        "<>" => p.event_rel(Rel::Ne, a, b),
+        "<" => p.event_rel(RelationalOp::Lt, a, b),
+        "<=" => p.event_rel(RelationalOp::Le, a, b),
+        ">" => p.event_rel(RelationalOp::Gt, a, b),
+        ">=" => p.event_rel(RelationalOp::Ge, a, b),
+        "==" => p.event_rel(RelationalOp::Eq, a, b),
+        "<>" => p.event_rel(RelationalOp::Ne, a, b),
         "+" => p.add(a, b),
         "-" => p.sub(a, b),
         "*" => p.mul(a, b),

@@ -1,8 +1,8 @@
 //! What must hold for every sorted system: each unknown is computed once, from what is known by then.
 
-use super::super::{Alias, Assign, Block, Dae, Loop, Unknown};
-use crate::flat::{Type, Variability};
-use bramah_expr::{ExprId, Node};
+use super::super::{AlgebraicLoop, Alias, BltBlock, Dae, ExplicitAssignment, Unknown};
+use crate::flat::{ScalarType, Variability};
+use bramah_expr::{ExprId, ExprNode};
 use std::collections::BTreeSet;
 
 /// Panics where a system breaks the rules.
@@ -38,7 +38,7 @@ fn algebraic(dae: &Dae) -> BTreeSet<Unknown> {
     let ids = (0..dae.variables.len() as u32).map(bramah_expr::VarId);
     let real = ids.filter(|v| {
         let variable = &dae.variables[v.index()];
-        variable.ty == Type::Real && variable.variability == Variability::Continuous && !variable.input
+        variable.ty == ScalarType::Real && variable.variability == Variability::Continuous && !variable.input
     });
     real.filter(|v| !aliased.contains(v) && !dae.discrete.contains(v)).map(Unknown::Var).collect()
 }
@@ -57,17 +57,17 @@ struct System<'a> {
 }
 
 impl System<'_> {
-    fn run(dae: &Dae, known: BTreeSet<Unknown>, blocks: &[Block]) -> BTreeSet<Unknown> {
+    fn run(dae: &Dae, known: BTreeSet<Unknown>, blocks: &[BltBlock]) -> BTreeSet<Unknown> {
         let mut system = System { dae, known, solved: BTreeSet::new() };
         blocks.iter().for_each(|b| system.block(b));
         system.solved
     }
 
-    fn block(&mut self, block: &Block) {
+    fn block(&mut self, block: &BltBlock) {
         match block {
-            Block::Assign(assign) => self.assign(assign),
-            Block::Loop(found) => self.torn(found),
-            Block::Mixed(mixed) => {
+            BltBlock::Assign(assign) => self.assign(assign),
+            BltBlock::Loop(found) => self.torn(found),
+            BltBlock::Mixed(mixed) => {
                 let discrete: Vec<Unknown> = mixed.discrete.iter().map(|a| a.unknown).collect();
                 self.known.extend(&discrete);
                 mixed.continuous.iter().for_each(|b| self.block(b));
@@ -79,7 +79,7 @@ impl System<'_> {
         }
     }
 
-    fn torn(&mut self, found: &Loop) {
+    fn torn(&mut self, found: &AlgebraicLoop) {
         assert_eq!(found.tearing.len(), found.residuals.len());
         for &unknown in &found.tearing {
             self.solve(unknown);
@@ -90,7 +90,7 @@ impl System<'_> {
         }
     }
 
-    fn assign(&mut self, assign: &Assign) {
+    fn assign(&mut self, assign: &ExplicitAssignment) {
         self.uses(assign.value);
         self.solve(assign.unknown);
     }
@@ -104,9 +104,9 @@ impl System<'_> {
     fn uses(&self, e: ExprId) {
         for node in self.dae.exprs.reachable(&[e], |_| true) {
             let used = match self.dae.exprs.node(node) {
-                Node::Var(v) => Unknown::Var(v),
-                Node::Der(v) => Unknown::Der(v),
-                Node::EventRel(..) | Node::EventFloor(_) | Node::Sample(..) => panic!("an event is left"),
+                ExprNode::Var(v) => Unknown::Var(v),
+                ExprNode::Der(v) => Unknown::Der(v),
+                ExprNode::EventRel(..) | ExprNode::EventFloor(_) | ExprNode::Sample(..) => panic!("an event is left"),
                 _ => continue,
             };
             assert!(self.known.contains(&used), "{} is not known yet", self.dae.unknown_name(used));
