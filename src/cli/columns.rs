@@ -11,10 +11,11 @@ use bramah_syntax::diag::{Code, Diagnostic, nearest};
 /// The variables to write, in declaration order.
 ///
 /// Without patterns, and for patterns with `*` or `?`: variables that can change and are neither protected nor annotated
-/// `HideResult`, and protected states; in a `.mat` file also parameters, which cost nothing there. A variable named exactly is always written.
+/// `HideResult`, and protected states; in formats where they cost nothing also parameters. A variable
+/// named exactly is always written.
 pub(super) fn choose(dae: &Dae, patterns: &[String], target: &ResultTarget) -> Result<Vec<VarId>, CommandFailure> {
     let globs = GlobPatterns::new(patterns);
-    let with_parameters = matches!(target, ResultTarget::Mat(_));
+    let with_parameters = target.format().constants_are_free;
     let usual =
         |id: VarId, v: &FlatVariable| dae.is_shown(id) && (with_parameters || v.variability >= Variability::Discrete);
     let wanted = |id: VarId, v: &FlatVariable| {

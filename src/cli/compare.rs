@@ -28,11 +28,9 @@ Examples:
 
 Exit status: 0 all signals within tolerance, 1 a violation, 2 the files cannot be compared.")]
 pub(super) struct CompareArgs {
-    /// The reference: CSV, Modelica .mat or .parquet
-    #[arg(value_name = "A")]
+    #[arg(value_name = "A", help = format!("The reference: {}", bramah_results::formats::names()))]
     reference: PathBuf,
-    /// The result: CSV, Modelica .mat or .parquet
-    #[arg(value_name = "B")]
+    #[arg(value_name = "B", help = format!("The result: {}", bramah_results::formats::names()))]
     result: PathBuf,
     /// Signals to compare [default: those in both files]; may be repeated
     #[arg(long, value_name = "GLOB,...")]

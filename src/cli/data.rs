@@ -6,8 +6,9 @@ use super::CommandFailure;
 use super::files::access;
 use super::messages::MessageReporter;
 use bramah_expr::units::MeasurementUnit;
-use bramah_results::{ReadStrictness, Trajectory, mat, parquet, read_csv};
-use bramah_syntax::diag::{Code, Diagnostic, FileId};
+use bramah_results::Trajectory;
+use bramah_results::formats::{self, FORMATS, ResultFile};
+use bramah_syntax::diag::{Code, FileId};
 
 /// Reads a data file as text; letters of old encodings in remarks and units do no harm.
 pub(super) fn text(path: &Path, messages: &mut MessageReporter) -> Result<FileId, CommandFailure> {
@@ -16,26 +17,18 @@ pub(super) fn text(path: &Path, messages: &mut MessageReporter) -> Result<FileId
     Ok(messages.sources.add(path.display().to_string(), text))
 }
 
-/// Reads a result or a recording with all its signals: CSV, Modelica `.mat`, or Parquet.
+/// Reads a result or a recording with all its signals, in the format that its ending names, else as CSV.
 pub(super) fn result(
     path: &Path,
     time_column: Option<&str>,
     messages: &mut MessageReporter,
 ) -> Result<Trajectory, CommandFailure> {
-    let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-    if extension == "mat" {
-        let bytes = std::fs::read(path).map_err(|e| access(path, "read", &e))?;
-        let unusable = |e| Diagnostic::new(Code::BadData, format!("`{}` cannot be used: {e}", path.display()));
-        return mat::read(&bytes).map_err(|e| unusable(e).into());
-    }
-    if extension == "parquet" {
-        let file = std::fs::File::open(path).map_err(|e| access(path, "read", &e))?;
-        let unusable = |e| Diagnostic::new(Code::BadData, format!("`{}` cannot be used: {e}", path.display()));
-        return parquet::read(file, time_column).map_err(|e| unusable(e).into());
-    }
-    let file = text(path, messages)?;
-    let checked = read_csv(&messages.sources, file, time_column, ReadStrictness::Result);
-    checked.value.ok_or(CommandFailure { diagnostics: checked.diagnostics })
+    let bytes = std::fs::read(path).map_err(|e| access(path, "read", &e))?;
+    let named = path.extension().and_then(|e| formats::of_ending(&e.to_string_lossy()));
+    let name = path.display().to_string();
+    let file = ResultFile { name: &name, bytes, time_column, sources: &mut messages.sources };
+    let read = (named.unwrap_or(&FORMATS[0]).read)(file);
+    read.value.ok_or(CommandFailure { diagnostics: read.diagnostics })
 }
 
 /// `--unit 'p_*=Pa:bar'`: units for signals of files that carry none.

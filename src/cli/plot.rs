@@ -24,8 +24,7 @@ Examples:
   bramah plot p*.csv --x N --y dp --variables eta    a map: each file is a row, at its value of dp
   bramah plot press.csv --unit '*.p=Pa:bar'          units for a file that carries none")]
 pub(super) struct PlotArgs {
-    /// Result files: CSV, Modelica .mat or .parquet
-    #[arg(required = true, value_name = "RESULT")]
+    #[arg(required = true, value_name = "RESULT", help = format!("Result files: {}", bramah_results::formats::names()))]
     results: Vec<PathBuf>,
     /// Variables to draw, such as 'pump.*,line.p'; may be repeated
     #[arg(long, value_name = "GLOB,...")]

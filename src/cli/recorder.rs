@@ -7,8 +7,8 @@ use std::time::{Duration, Instant};
 use super::CommandFailure;
 use super::checkpoint::ResultPosition;
 use super::files::{NewFile, access, ending, print};
-use bramah_results::parquet::ParquetWriter;
-use bramah_results::{CsvUnits, CsvWriter, Signal, Trajectory, csv_bytes_per_row, mat};
+use bramah_results::formats::{self, FORMATS, ResultFormat, ResultWriter};
+use bramah_results::{CsvUnits, CsvWriter, Signal, Trajectory};
 use bramah_syntax::diag::{Code, Diagnostic};
 
 /// Rows wait in memory until they take this much, so that writing hardly disturbs the run; in Parquet a group of rows.
@@ -17,60 +17,53 @@ const BUFFER_BYTES: usize = 32 << 20;
 const LARGE: u64 = 1_000_000_000;
 
 /// Where a result goes.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum ResultTarget {
-    /// A CSV file.
-    Csv(PathBuf),
-    /// CSV on stdout.
-    Stdout,
-    /// A Modelica `.mat` file.
-    Mat(PathBuf),
-    /// A Parquet file.
-    Parquet(PathBuf),
+#[derive(Clone)]
+pub(super) struct ResultTarget {
+    /// The file; `None` for stdout.
+    path: Option<PathBuf>,
+    format: &'static ResultFormat,
 }
 
 impl ResultTarget {
+    /// CSV on stdout.
+    pub fn stdout() -> Self {
+        ResultTarget { path: None, format: &FORMATS[0] }
+    }
+
     /// The format follows from the file's name.
     pub fn new(name: &str) -> Result<ResultTarget, CommandFailure> {
         let path = PathBuf::from(name);
         if name == "-" {
-            return Ok(ResultTarget::Stdout);
+            return Ok(ResultTarget::stdout());
         }
         if path.extension().is_some_and(|e| ["html", "svg", "png"].iter().any(|p| e.eq_ignore_ascii_case(p))) {
             return Err(Diagnostic::new(Code::BadArgument, format!("`{name}` is no result file"))
                 .help("a picture is written by `--plot`, or by `bramah plot` afterwards")
                 .into());
         }
-        match ending(&path, "a result", &["csv", "mat", "parquet"])? {
-            "mat" => Ok(ResultTarget::Mat(path)),
-            "parquet" => Ok(ResultTarget::Parquet(path)),
-            _ => Ok(ResultTarget::Csv(path)),
-        }
+        let ending = ending(&path, "a result", &formats::endings())?;
+        let format = formats::of_ending(ending).expect("one of the endings");
+        Ok(ResultTarget { path: Some(path), format })
     }
 
-    /// Whether a name asks for Parquet.
-    pub fn is_parquet(path: &Path) -> bool {
-        matches!(path.to_str().map(ResultTarget::new), Some(Ok(ResultTarget::Parquet(_))))
+    /// What the format of the file is like.
+    pub fn format(&self) -> &'static ResultFormat {
+        self.format
     }
 
     /// The name for messages.
     pub fn name(&self) -> String {
-        match self {
-            ResultTarget::Csv(path) | ResultTarget::Mat(path) | ResultTarget::Parquet(path) => {
-                path.display().to_string()
-            }
-            ResultTarget::Stdout => "stdout".to_owned(),
-        }
+        self.path.as_ref().map_or_else(|| "stdout".to_owned(), |path| path.display().to_string())
     }
 }
 
 /// Takes the rows of a run.
 pub(super) struct ResultRecorder {
     target: ResultTarget,
-    csv: Option<CsvWriter<Box<dyn Write + Send>>>,
-    parquet: Option<ParquetWriter<Box<dyn Write + Send>>>,
+    /// Writes to the file or to stdout; gone after a failure.
+    writer: Option<Box<dyn ResultWriter>>,
     file: Option<NewFile>,
-    /// Rows for the file, each with its time first, one after the other: with many columns a row at a time is
+    /// Rows for the writer, each with its time first, one after the other: with many columns a row at a time is
     /// several times faster than a column at a time.
     waiting: Vec<f64>,
     /// All rows, where they are wanted after the run.
@@ -90,24 +83,18 @@ impl ResultRecorder {
         units: CsvUnits,
         keep: bool,
     ) -> Result<Self, CommandFailure> {
-        let keep = keep || matches!(target, ResultTarget::Mat(_));
-        let file = match &target {
-            ResultTarget::Csv(path) | ResultTarget::Mat(path) | ResultTarget::Parquet(path) => {
-                Some(NewFile::create(path)?)
-            }
-            ResultTarget::Stdout => None,
-        };
+        let file = target.path.as_deref().map(NewFile::create).transpose()?;
         Ok(Self::on(target, file, (signals, units), keep, None))
     }
 
-    /// Rows into a CSV file that survives a run that is killed; behind those of a checkpoint, if there is one.
+    /// Rows into a file that survives a run that is killed; behind those of a checkpoint, if there is one.
     pub fn lasting(
         target: ResultTarget,
         signals: Vec<Signal>,
         units: CsvUnits,
         written: Option<&ResultPosition>,
     ) -> Result<Self, CommandFailure> {
-        let ResultTarget::Csv(path) = &target else {
+        let Some(path) = target.path.as_deref().filter(|_| target.format.grows) else {
             let text = format!("a run with checkpoints writes a CSV file, and the result is `{}`", target.name());
             return Err(Diagnostic::new(Code::BadArgument, text)
                 .help("name one with `-o`; `bramah plot` draws it afterwards")
@@ -126,8 +113,7 @@ impl ResultRecorder {
     ) -> ResultRecorder {
         let mut recorder = ResultRecorder {
             target,
-            csv: None,
-            parquet: None,
+            writer: None,
             file,
             waiting: Vec::new(),
             rows: Trajectory::new(signals),
@@ -137,36 +123,24 @@ impl ResultRecorder {
             unread: false,
             writing: Duration::ZERO,
         };
-        recorder.open(units, written.map(|w| w.bytes));
+        match recorder.open(units, written.map(|w| w.bytes)) {
+            Ok(writer) => recorder.writer = Some(writer),
+            Err(error) => recorder.fail(&error),
+        }
         recorder
     }
 
-    fn open(&mut self, units: CsvUnits, written: Option<u64>) {
-        let out: Box<dyn Write + Send> = match (&self.target, &self.file) {
-            (ResultTarget::Csv(_) | ResultTarget::Parquet(_), Some(file)) => match file.handle() {
-                Ok(handle) => Box::new(handle),
-                Err(error) => return self.fail(&error),
-            },
-            (ResultTarget::Stdout, _) => Box::new(std::io::BufWriter::new(std::io::stdout())),
-            _ => return,
+    /// Begins the file, or goes on behind the bytes that it has.
+    fn open(&self, units: CsvUnits, written: Option<u64>) -> std::io::Result<Box<dyn ResultWriter>> {
+        let out: Box<dyn Write + Send> = match &self.file {
+            // rows of CSV come in large pieces already
+            Some(file) if self.target.format.grows => Box::new(file.handle()?),
+            Some(file) => Box::new(std::io::BufWriter::new(file.handle()?)),
+            None => Box::new(std::io::BufWriter::new(std::io::stdout())),
         };
-        if matches!(self.target, ResultTarget::Parquet(_)) {
-            match ParquetWriter::new(
-                Box::new(std::io::BufWriter::new(out)) as Box<dyn Write + Send>,
-                &self.rows.signals,
-            ) {
-                Ok(parquet) => self.parquet = Some(parquet),
-                Err(error) => self.fail(&error),
-            }
-            return;
-        }
-        let writer = match written {
-            Some(bytes) => Ok(CsvWriter::resume(out, &self.rows.signals, bytes)),
-            None => CsvWriter::with_units(out, &self.rows.signals, units),
-        };
-        match writer {
-            Ok(csv) => self.csv = Some(csv),
-            Err(error) => self.fail(&error),
+        match written {
+            Some(bytes) => Ok(Box::new(CsvWriter::resume(out, &self.rows.signals, bytes))),
+            None => (self.target.format.create)(out, &self.rows.signals, units),
         }
     }
 
@@ -176,8 +150,7 @@ impl ResultRecorder {
         } else {
             self.failure = Some(access(&PathBuf::from(self.target.name()), "written", error));
         }
-        self.csv = None;
-        self.parquet = None;
+        self.writer = None;
     }
 
     /// Takes a row; false when it makes no sense to go on because nothing can be written any more.
@@ -186,7 +159,7 @@ impl ResultRecorder {
         if self.keep {
             self.rows.push(time, values);
         }
-        if self.csv.is_some() || self.parquet.is_some() {
+        if self.writer.is_some() {
             self.waiting.push(time);
             self.waiting.extend_from_slice(values);
         }
@@ -209,14 +182,8 @@ impl ResultRecorder {
     /// Writes what waits.
     fn flush(&mut self) {
         let clock = Instant::now();
-        if let Some(csv) = &mut self.csv {
-            let mut rows = self.waiting.chunks_exact(self.rows.columns.len() + 1);
-            if let Err(error) = rows.try_for_each(|row| csv.row(row[0], row[1..].iter().copied())) {
-                self.fail(&error);
-            }
-        }
-        if let Some(parquet) = &mut self.parquet
-            && let Err(error) = parquet.rows(&self.waiting)
+        if let Some(writer) = &mut self.writer
+            && let Err(error) = writer.rows(&self.waiting)
         {
             self.fail(&error);
         }
@@ -227,7 +194,7 @@ impl ResultRecorder {
     /// Puts all rows on the disk and says how far they reach; `None` after a failure.
     pub fn mark(&mut self) -> Option<ResultPosition> {
         self.flush();
-        let bytes = match self.csv.as_mut().map(CsvWriter::flush) {
+        let bytes = match self.writer.as_mut().map(|writer| writer.flush()) {
             Some(Ok(bytes)) => bytes,
             Some(Err(error)) => {
                 self.fail(&error);
@@ -260,18 +227,10 @@ impl ResultRecorder {
     /// Writes the rest and gives the file its name; hands out the rows where they were to be kept.
     pub fn finish(mut self) -> Result<Trajectory, CommandFailure> {
         self.flush();
-        if let Some(csv) = self.csv.take()
-            && let Err(error) = csv.finish()
+        if let Some(writer) = self.writer.take()
+            && let Err(error) = writer.finish()
         {
             self.fail(&error);
-        }
-        if let Some(parquet) = self.parquet.take()
-            && let Err(error) = parquet.finish()
-        {
-            self.fail(&error);
-        }
-        if let (ResultTarget::Mat(path), Some(file)) = (&self.target, &mut self.file) {
-            mat::write(file, &self.rows).map_err(|e| access(path, "written", &e))?;
         }
         match (self.failure.take(), self.file.take()) {
             (None, Some(file)) => file.finish()?,
@@ -292,10 +251,7 @@ fn kept(mut failure: CommandFailure, file: Option<NewFile>) -> CommandFailure {
 
 /// A note about a result that will be large.
 pub(super) fn announcement(signals: &[Signal], intervals: f64, target: &ResultTarget) -> Option<Diagnostic> {
-    let row = match target {
-        ResultTarget::Mat(_) | ResultTarget::Parquet(_) => 8 * (signals.len() as u64 + 1),
-        _ => csv_bytes_per_row(signals),
-    };
+    let row = (target.format.bytes_per_row)(signals);
     let bytes = row as f64 * (intervals + 1.0);
     (bytes > LARGE as f64).then(|| {
         let text = format!("the result will take about {:.1} GB in `{}`", bytes / 1e9, target.name());
@@ -349,20 +305,24 @@ mod tests {
     fn a_mat_file_and_kept_rows() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.mat");
-        let mut recorder =
-            ResultRecorder::new(ResultTarget::Mat(path.clone()), vec![Signal::new("x")], CsvUnits::None, false)
-                .unwrap();
+        let mut recorder = ResultRecorder::new(
+            ResultTarget::new(path.to_str().unwrap()).unwrap(),
+            vec![Signal::new("x")],
+            CsvUnits::None,
+            true,
+        )
+        .unwrap();
         recorder.row(0.0, &[1.0]);
         recorder.row(1.0, &[2.0]);
         let rows = recorder.finish().unwrap();
-        assert_eq!(mat::read(&std::fs::read(path).unwrap()).unwrap(), rows);
+        assert_eq!(bramah_results::mat::read(&std::fs::read(path).unwrap()).unwrap(), rows);
     }
 
     #[cfg(target_os = "linux")]
     #[test]
     fn a_full_disk_is_told() {
         let mut recorder =
-            ResultRecorder::new(ResultTarget::Csv("/dev/full".into()), vec![Signal::new("x")], CsvUnits::None, false)
+            ResultRecorder::new(ResultTarget::new("/dev/full").unwrap(), vec![Signal::new("x")], CsvUnits::None, false)
                 .unwrap();
         recorder.row(0.0, &[1.0]);
         let failure = recorder.finish().unwrap_err();
@@ -372,7 +332,7 @@ mod tests {
     #[test]
     fn large_results_are_announced() {
         let signals = vec![Signal::new("x"); 1000];
-        let target = ResultTarget::Stdout;
+        let target = ResultTarget::stdout();
         assert!(announcement(&signals, 500.0, &target).is_none());
         assert!(announcement(&signals, 1e5, &target).unwrap().message.contains("GB"));
     }

@@ -63,8 +63,10 @@ pub(super) struct RunArgs {
     /// Variables to write, such as 'pump.*,v[1].p'; brackets are literal; may be repeated
     #[arg(long, value_name = "GLOB,...")]
     variables: Vec<String>,
-    /// The result: .csv, Modelica .mat, .parquet, or `-` for CSV on stdout [default: CLASS.csv]
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help = format!(
+        "The result: {}, by its ending, or `-` for CSV on stdout [default: CLASS.csv]",
+        bramah_results::formats::names()
+    ))]
     output_file: Option<String>,
     /// Also draw the result: .svg, .png or .html
     #[arg(long, value_name = "FILE")]

@@ -89,7 +89,7 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut MessageReporter) -> Res
 
 fn variables(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<VarId>, CommandFailure> {
     if !args.variables.is_empty() {
-        return columns::choose(&model.dae, &args.variables, &ResultTarget::Stdout);
+        return columns::choose(&model.dae, &args.variables, &ResultTarget::stdout());
     }
     let all = || (0..).map(VarId).zip(&model.flat.variables);
     let outputs: Vec<VarId> = all().filter(|(_, v)| v.output && v.ty == ScalarType::Real).map(|(v, _)| v).collect();

@@ -134,7 +134,7 @@ fn over(args: &SteadyArgs, model: &CompiledModel) -> Result<(Vec<String>, Vec<f6
 
 fn wanted(args: &SteadyArgs, model: &CompiledModel, chosen: &LinearizationSetup) -> Result<Vec<VarId>, CommandFailure> {
     if !args.variables.is_empty() {
-        return columns::choose(&model.dae, &args.variables, &super::recorder::ResultTarget::Stdout);
+        return columns::choose(&model.dae, &args.variables, &super::recorder::ResultTarget::stdout());
     }
     let outputs = (0..).map(VarId).zip(&model.flat.variables).filter(|(_, v)| v.output).map(|(v, _)| v);
     let states = chosen.plan.state_variables().filter(|v| v.index() < model.flat.variables.len());

@@ -135,21 +135,25 @@ fn settings(
     });
     settings.wanted.clone_from(&plan.wanted);
     if args.trajectories.is_some() {
-        let target = ResultTarget::Stdout;
+        let target = ResultTarget::stdout();
         let more = columns::choose(&model.dae, &experiment.variables, &target)?;
         settings.wanted.extend(more.into_iter().filter(|v| !plan.wanted.contains(v)));
     }
     Ok(settings)
 }
 
+fn is_parquet(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"))
+}
+
 /// The file that takes a line a run: Parquet cannot grow.
 fn with_lines(output: &Path) -> PathBuf {
-    if ResultTarget::is_parquet(output) { output.with_extension("csv") } else { output.to_owned() }
+    if is_parquet(output) { output.with_extension("csv") } else { output.to_owned() }
 }
 
 /// The whole table once more as Parquet, where that is wanted.
 fn write_parquet(args: &SweepArgs, table: &SweepTable) -> Result<(), CommandFailure> {
-    let Some(path) = args.output_file.as_ref().filter(|path| ResultTarget::is_parquet(path)) else { return Ok(()) };
+    let Some(path) = args.output_file.as_ref().filter(|path| is_parquet(path)) else { return Ok(()) };
     let mut bytes = Vec::new();
     write_table(&mut bytes, &table.typed()).map_err(|e| access(path, "written", &e))?;
     files::write(path, &bytes)

@@ -1,8 +1,10 @@
-//! Writes the nominal model with effects attached, as Modelica.
+//! Writes the nominal model with effects attached, as Modelica text.
 //!
-//! The text is a model `Augmented` around an instance `plant` of the nominal class: inputs pass through the effects of
-//! commands before they reach the plant, each signal of the study is a variable of its name behind its sensor effects,
-//! and inside the plant every node that an effect touches gets one tap of the node's own connector class.
+//! Enters: the topology, attached hypotheses with values, and the signals. Leaves: an [`AugmentedModel`], which
+//! `problem` compiles like any other model. The text is a model `Augmented` around an instance `plant` of the nominal
+//! class. Inputs pass through the effects of commands before they reach the plant. Each signal of the study is a
+//! variable of its name behind its sensor effects. Inside the plant every node that an effect touches gets one tap of
+//! the node's own connector class.
 
 use super::circuit::{CircuitTopology, ModelInput, SignalLink};
 use super::effects::{EffectModel, own_classes};
@@ -19,54 +21,56 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// The instance of the nominal model inside the augmented one: `pump.w` becomes `plant.pump.w`.
+/// Instance name of the nominal model inside the augmented one: `pump.w` becomes `plant.pump.w`.
 pub const PLANT: &str = "plant";
 
-/// The path under which the text is compiled.
+/// Path under which the text is compiled.
 pub(super) const SOURCE: &str = "(gap)/Augmented.mo";
 
-/// The most terms in one sum: the parser limits the height of expressions.
+/// Most terms in one sum: the parser limits the depth of expressions.
 const LONGEST_SUM: usize = 100;
 
-/// A hypothesis with a name and values.
+/// A hypothesis with an instance name and values.
 #[derive(Clone, Debug)]
 pub struct HypothesisInstance<'a> {
-    /// Its name in the augmented model, a Modelica identifier of its own.
+    /// Its name in the augmented model: a Modelica identifier of its own.
     pub name: String,
-    /// What is attached. Hypotheses of family `parameter` add nothing: their parameter is there already.
+    /// What is attached. Hypotheses of family `parameter` add nothing: their parameter exists already.
     pub hypothesis: &'a Hypothesis,
-    /// Values of coefficients and shapes; coefficients not named are off, shapes take the first of their grid.
+    /// Values of coefficients and shapes by label. Coefficients not named are off, shapes take the first value of their
+    /// grid.
     pub values: Vec<(String, f64)>,
 }
 
 /// The augmented model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AugmentedModel {
-    /// The text of the model `Augmented`.
+    /// Text of the model `Augmented`.
     pub text: String,
-    /// For each attached hypothesis the name of each of its coefficients and shapes (in this order) as a parameter of
-    /// the model; for a drift that of the drifting parameter.
+    /// Per attached hypothesis the names of its coefficients, then shapes, as parameters of the model; for a parameter
+    /// out of tolerance the name of that parameter.
     pub parameters: Vec<Vec<String>>,
-    /// The variable of each signal of the study, sensor effects included.
+    /// Variable of each signal of the study, sensor effects included.
     pub signals: Vec<String>,
     /// Signals inside the nominal model whose statements the text replaces.
     pub replaced: Vec<SignalLink>,
 }
 
-/// How the model is written.
+/// Form in which the model is written.
 #[derive(Clone, Debug)]
 pub(super) struct AugmentationForm<'a> {
-    /// Its name.
+    /// Name of its class.
     pub class: &'a str,
-    /// The nominal class is a copy from which connections cut by Series elements are already gone.
+    /// The nominal class is a copy from which cut connections are already removed, so that the text needs no `break`.
     pub cut: bool,
     /// Parameters of the nominal model with other values.
     pub drifts: &'a [(String, f64)],
-    /// What stands before `end`.
+    /// Text of the annotation before `end`.
     pub annotation: String,
 }
 
-/// Writes the nominal model with effects attached.
+/// Writes the nominal model with hypotheses attached. Coefficients and shapes become parameters of the text, so that
+/// their values can change without compiling again.
 pub fn augment(
     circuit: &CircuitTopology,
     attached: &[HypothesisInstance<'_>],
@@ -80,7 +84,7 @@ pub fn augment(
     )
 }
 
-/// Writes it in the form wanted.
+/// Writes it in a given form.
 pub(super) fn written(
     circuit: &CircuitTopology,
     attached: &[HypothesisInstance<'_>],
@@ -101,8 +105,8 @@ pub(super) fn written(
     .write(attached, signals)
 }
 
-/// Compiles an augmented model: classes of the nominal one come from where `nominal` finds them, `folder` holds
-/// effects of the user's own.
+/// Compiles an augmented model to a model that can be run.
+/// Classes of the nominal model come from where `nominal` finds them; `folder` holds effects of the user's own.
 pub fn compile(
     world: &dyn World,
     nominal: &Request,
@@ -114,7 +118,7 @@ pub fn compile(
     bramah_circuit::compiled::compile(&overlay, &request, options)
 }
 
-/// A world with the text in it and without the statements that it replaces, and how to ask for its class.
+/// A world with the text in it and without the statements that it replaces, and the request for its class.
 pub(super) fn request<'a>(
     world: &'a dyn World,
     nominal: &Request,
@@ -127,13 +131,14 @@ pub(super) fn request<'a>(
     for link in &augmented.replaced {
         let Ok(mut text) = files.read(&link.file).or_else(|_| world.read(&link.file)) else { continue };
         let Range { start, end } = link.statement;
-        // the semicolon behind it would stand alone; every other statement keeps its place
+        // the semicolon behind the statement would stand alone; blanks keep every other statement at its position
         let Some(end) = text.get(end..).and_then(|rest| rest.find(';')).map(|i| end + i + 1) else { continue };
         let blank: String = text[start..end].bytes().map(|b| if b == b'\n' { '\n' } else { ' ' }).collect();
         text.replace_range(start..end, &blank);
         files.add(&link.file, text);
     }
     let overlay = Overlay { base: world, files };
+    // values that the study sets in the nominal model belong to the instance `plant`
     let inner = |o: &Override| Override { name: format!("{PLANT}.{}", o.name), value: o.value.clone() };
     let mut request = Request {
         source,
@@ -152,38 +157,49 @@ pub(super) fn request<'a>(
     (overlay, request)
 }
 
-/// Declarations and equations of one class.
+/// Declarations and equations of one class, as text.
 #[derive(Default)]
 struct AugmentedClassBody {
+    /// Lines before `equation`.
     declarations: String,
+    /// Lines behind `equation`.
     equations: String,
 }
 
+/// Writer of an augmented model. Ports and nodes are numbers of the topology.
 struct AugmentationWriter<'a> {
+    /// Topology of the nominal model.
     circuit: &'a CircuitTopology,
+    /// Form of the text.
     form: AugmentationForm<'a>,
+    /// Body of the class around the nominal one, inside the instance `plant`.
     plant: AugmentedClassBody,
+    /// Body of the augmented class itself.
     around: AugmentedClassBody,
-    /// What is drawn from the nodes that have a tap.
+    /// Per node with a tap the terms that are drawn from it.
     taps: BTreeMap<usize, Vec<String>>,
-    /// What falls at the ports that are cut off.
+    /// Per cut port the differences of potential of its Series elements.
     drops: BTreeMap<usize, Vec<String>>,
-    /// Ports taken out of their nodes by Series elements.
+    /// Ports that Series elements take out of their nodes.
     cut: BTreeSet<usize>,
-    /// Connector classes that have a tap class, each with a port as example.
+    /// Connector classes that have a tap class, each with a port as an example.
     classes: Vec<(&'a str, usize)>,
+    /// Signals whose statements are replaced.
     replaced: Vec<SignalLink>,
 }
 
-/// The instance of a hypothesis at the i-th of its places.
+/// Instance name of a hypothesis at the i-th of its places.
 pub(super) fn instance(name: &str, i: usize) -> String {
     format!("{name}_{}", i + 1)
 }
 
 impl<'a> AugmentationWriter<'a> {
+    /// Writes the model: parameters, effects at nodes and in connections, then inputs, signals inside the model and
+    /// sensors.
     fn write(mut self, attached: &[HypothesisInstance<'_>], signals: &[SensorSignal]) -> AugmentedModel {
         let parameters = attached.iter().map(|a| self.parameters(a)).collect();
         self.cut = cut(attached);
+        // before any tap, so that a node is one again without its cut ports
         self.rejoin();
         for a in attached {
             for (i, at) in a.hypothesis.attachments.iter().enumerate() {
@@ -199,17 +215,20 @@ impl<'a> AugmentationWriter<'a> {
         self.inputs(attached);
         self.links(attached);
         let signals = self.signals(attached, signals);
+        // when all effects are known: sums of what falls and of what is drawn
         self.fall();
         self.draw();
         AugmentedModel { text: self.text(), parameters, signals, replaced: self.replaced }
     }
 
-    /// Declares the coefficients and shapes of a hypothesis, and gives their full names.
+    /// Declares the coefficients and shapes of a hypothesis and returns their full names.
+    /// A parameter out of tolerance exists already; only its name is returned.
     fn parameters(&mut self, a: &HypothesisInstance<'_>) -> Vec<String> {
         let h = a.hypothesis;
         if let AttachmentSite::Parameter(name) = &h.attachments[0].site {
             return vec![format!("{PLANT}.{name}")];
         }
+        // parameters stand where their effect stands: inside the plant for nodes and for signals inside the model
         let inside = match &h.attachments[0].site {
             AttachmentSite::Command(name) => self.circuit.link(name).is_some(),
             site => matches!(site, AttachmentSite::Node(_) | AttachmentSite::Across(..) | AttachmentSite::Into(_)),
@@ -228,7 +247,8 @@ impl<'a> AugmentationWriter<'a> {
         names
     }
 
-    /// An instance of an effect, its coefficients and shapes bound to those of the hypothesis.
+    /// Name and declaration of an effect instance whose parameters are bound to those of the hypothesis.
+    /// `base`: further parameters with the expressions that they take.
     fn declaration(
         a: &HypothesisInstance<'_>,
         i: usize,
@@ -236,6 +256,7 @@ impl<'a> AugmentationWriter<'a> {
         base: &[(String, String)],
     ) -> (String, String) {
         let instance = instance(&a.name, i);
+        // a coefficient per recording is the sum of all, of which only one acts in each recording
         let of_all = |name: &str| {
             let own = a.hypothesis.coefficients.iter().filter(|c| c.name == name);
             own.map(|c| format!("{}_{}", a.name, c.label())).collect::<Vec<_>>().join(" + ")
@@ -248,6 +269,7 @@ impl<'a> AugmentationWriter<'a> {
         (instance, text)
     }
 
+    /// Attaches an effect to one or two nodes: it reads their potentials and draws its through variable from them.
     fn physical(&mut self, a: &HypothesisInstance<'_>, i: usize, at: &EffectAttachment, effect: &EffectModel) {
         let (instance, declaration) = Self::declaration(a, i, effect, &at.base);
         self.plant.declarations.push_str(&declaration);
@@ -257,6 +279,7 @@ impl<'a> AugmentationWriter<'a> {
             _ => &[],
         };
         let Some(through) = &effect.interface.through else { return };
+        // what leaves the first node enters the second one
         let signs = ["", "-"];
         for ((port, potential), sign) in ports.iter().zip(&effect.interface.potential).zip(signs) {
             let tap = self.tap(*port);
@@ -279,7 +302,8 @@ impl<'a> AugmentationWriter<'a> {
         }
     }
 
-    /// Puts an effect between a port that was cut off and the rest of its node; several lie one behind the other.
+    /// Puts an effect between a cut port and the rest of its node; several effects there lie in series.
+    /// The effect reads the flow through the port and gives a difference of potential.
     fn series(
         &mut self,
         a: &HypothesisInstance<'_>,
@@ -297,13 +321,15 @@ impl<'a> AugmentationWriter<'a> {
         self.drops.get_mut(&port).expect("just made").push(format!("{instance}.{}", drop.name));
     }
 
-    /// Leads what flows through a port that was cut off past the place of its series elements.
+    /// Leads what flows through a cut port past the place of its Series elements. Does nothing the second time.
+    /// The port gets a tap of its own (`far`), which draws the flow with the opposite sign of the node's tap.
     fn open(&mut self, port: usize) {
         if self.drops.contains_key(&port) {
             return;
         }
         self.drops.insert(port, Vec::new());
         let p = &self.circuit.ports[port];
+        // the node gets a tap too, because it takes the flow of the cut port
         self.tap(port);
         let class = self.tap_class(port) + 1;
         let (far, through) = (far_of(port), through_of(port));
@@ -317,7 +343,7 @@ impl<'a> AugmentationWriter<'a> {
         self.taps.get_mut(&p.node).expect("just made").push(format!("{through}{share}"));
     }
 
-    /// What falls where connections are cut.
+    /// Writes the difference of potential where connections are cut: the sum of the drops of all elements there.
     fn fall(&mut self) {
         for (port, drops) in std::mem::take(&mut self.drops) {
             let v = &self.circuit.ports[port].potential;
@@ -332,11 +358,12 @@ impl<'a> AugmentationWriter<'a> {
         }
     }
 
-    /// Joins what remains of a node when ports are taken out of it.
+    /// Connects what remains of a node when ports are taken out of it.
     fn rejoin(&mut self) {
         let cut_nodes: BTreeSet<usize> = self.cut.iter().map(|&p| self.circuit.ports[p].node).collect();
         for node in cut_nodes {
             let rest = self.circuit.nodes[node].ports.iter().copied().filter(|p| !self.cut.contains(p));
+            // ports that no cut connection touches are still connected
             let touched = |p: &usize| self.broken().any(|(a, b)| a == *p || b == *p);
             let rest: Vec<&str> = rest.filter(touched).map(|p| self.circuit.ports[p].name.as_str()).collect();
             for pair in rest.windows(2) {
@@ -345,12 +372,14 @@ impl<'a> AugmentationWriter<'a> {
         }
     }
 
+    /// Connections that touch a cut port.
     fn broken(&self) -> impl Iterator<Item = (usize, usize)> {
         broken(self.circuit, &self.cut)
     }
 
-    /// Gives an effect the potential of a port, in SI units.
+    /// Gives an effect the potential of a port, in SI units. `tap`: name of the tap at the port's node.
     fn read(&mut self, instance: &str, potential: &str, tap: &str, port: usize) {
+        // the port may use other units than SI, with an offset for temperatures
         let q = &self.circuit.ports[port].potential;
         let offset = MeasurementUnit::parse(&q.unit).map_or(0.0, |u| u.offset);
         let plus = if offset == 0.0 { String::new() } else { format!(" + {offset:e}") };
@@ -358,12 +387,14 @@ impl<'a> AugmentationWriter<'a> {
         let _ = writeln!(self.plant.equations, "    {instance}.{potential} = {value};");
     }
 
-    /// The tap at the node of a port, made when first asked for.
+    /// Name of the tap at the node of a port; the tap is made at the first call.
+    /// A tap is a component with one port of the node's connector class, and a flow `drawn`.
     fn tap(&mut self, port: usize) -> String {
         let circuit = self.circuit;
         let node = circuit.ports[port].node;
         let name = format!("gap_tap_{}", node + 1);
         if !self.taps.contains_key(&node) {
+            // a port that stays in the node, as near to the top level as possible
             let first = nearest(circuit, node, &self.cut);
             let class = self.tap_class(first);
             let _ = writeln!(self.plant.declarations, "    GapTap_{} {name};", class + 1);
@@ -373,6 +404,7 @@ impl<'a> AugmentationWriter<'a> {
         name
     }
 
+    /// Index of the tap class for the connector class of a port.
     fn tap_class(&mut self, port: usize) -> usize {
         let class = self.circuit.ports[port].class.as_str();
         self.classes.iter().position(|(c, _)| *c == class).unwrap_or_else(|| {
@@ -381,10 +413,11 @@ impl<'a> AugmentationWriter<'a> {
         })
     }
 
-    /// The sum of all that is drawn from each node.
+    /// Writes the sum of all terms drawn from each node, in the units of the node's flow.
     fn draw(&mut self) {
         for (node, drawn) in &self.taps {
             let mut terms = vec![String::from("0")];
+            // long sums are split into partial sums
             for (i, part) in drawn.chunks(LONGEST_SUM).enumerate() {
                 let name = format!("gap_tap_{}_{}", node + 1, i + 1);
                 let _ = writeln!(self.plant.declarations, "    Real {name};");
@@ -396,11 +429,12 @@ impl<'a> AugmentationWriter<'a> {
         }
     }
 
-    /// The inputs of the plant, each behind the effects on its command.
+    /// Writes the inputs of the plant, each behind the effects on its command. The augmented model has the same inputs.
     fn inputs(&mut self, attached: &[HypothesisInstance<'_>]) {
         let mut arrays: Vec<&str> = Vec::new();
         for input in &self.circuit.inputs {
             let base = input.name.split('[').next().unwrap_or(&input.name);
+            // an array is declared once, for its first element
             if !arrays.contains(&base) {
                 arrays.push(base);
                 self.around.declarations.push_str(&input_declaration(self.circuit, base, input));
@@ -411,7 +445,7 @@ impl<'a> AugmentationWriter<'a> {
         }
     }
 
-    /// Signals inside the plant on which effects act.
+    /// Writes the signals inside the plant on which effects act. Their original statements are listed for removal.
     fn links(&mut self, attached: &[HypothesisInstance<'_>]) {
         for link in &self.circuit.links {
             let name = &link.signal.name;
@@ -425,7 +459,7 @@ impl<'a> AugmentationWriter<'a> {
         }
     }
 
-    /// The signals of the study, each behind the effects of its sensor.
+    /// Writes the signals of the study behind the effects of their sensors and returns their names.
     fn signals(&mut self, attached: &[HypothesisInstance<'_>], signals: &[SensorSignal]) -> Vec<String> {
         let mut names = Vec::new();
         for (i, s) in signals.iter().enumerate() {
@@ -442,6 +476,8 @@ impl<'a> AugmentationWriter<'a> {
         names
     }
 
+    /// Identifier of a signal: its own name where that is free, quoted where it is no plain identifier.
+    /// A name that the plant or an input has already gets a prefix.
     fn signal_name(&self, name: &str) -> String {
         let simple = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             && name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
@@ -453,6 +489,7 @@ impl<'a> AugmentationWriter<'a> {
         }
     }
 
+    /// The complete text.
     fn text(&self) -> String {
         let mut text = format!("model {}\n", self.form.class);
         for (i, (class, port)) in self.classes.iter().enumerate() {
@@ -466,6 +503,7 @@ impl<'a> AugmentationWriter<'a> {
         let name = |p: usize| &self.circuit.ports[p].name;
         let broken: Vec<String> =
             self.broken().map(|(a, b)| format!("break connect({}, {})", name(a), name(b))).collect();
+        // the class `Plant` extends the nominal class, so the cut connections must be excluded there
         let broken =
             if broken.is_empty() || self.form.cut { String::new() } else { format!("({})", broken.join(", ")) };
         let _ = writeln!(text, "  model Plant\n    extends .{}{broken};", self.circuit.class);
@@ -479,7 +517,8 @@ impl<'a> AugmentationWriter<'a> {
     }
 }
 
-/// Puts all signal effects of a site in a row behind `from`; gives the end of the row.
+/// Puts all signal effects of a site in series behind the expression `from`; returns the output of the last one.
+/// Without effects that is `from` itself.
 fn chain(
     body: &mut AugmentedClassBody,
     attached: &[HypothesisInstance<'_>],
@@ -500,18 +539,19 @@ fn chain(
 }
 
 /// Ports that Series elements take out of their nodes.
+/// A set, since several elements may lie at one port.
 pub(super) fn cut(attached: &[HypothesisInstance<'_>]) -> BTreeSet<usize> {
     let places = attached.iter().flat_map(|a| &a.hypothesis.attachments);
     places.filter_map(|at| if let AttachmentSite::Into(p) = at.site { Some(p) } else { None }).collect()
 }
 
-/// Connections that touch a port taken out.
+/// Connections that touch a cut port, as pairs of ports.
 pub(super) fn broken(circuit: &CircuitTopology, cut: &BTreeSet<usize>) -> impl Iterator<Item = (usize, usize)> {
     let touches = |(a, b, _): &&(usize, usize, usize)| cut.contains(a) || cut.contains(b);
     circuit.connections.iter().filter(touches).map(|&(a, b, _)| (a, b))
 }
 
-/// Terms with their signs in a row.
+/// A sum of terms, each with its sign.
 fn sum(terms: &[String]) -> String {
     let mut text = String::new();
     for t in terms {
@@ -524,33 +564,39 @@ fn sum(terms: &[String]) -> String {
     text.trim_start().to_string()
 }
 
-/// The port of a node that lies least deep in the hierarchy.
+/// The port of a node that lies least deep in the hierarchy; a cut port only if there is no other.
 fn nearest(circuit: &CircuitTopology, node: usize, cut: &BTreeSet<usize>) -> usize {
     let depth = |p: &usize| (cut.contains(p), circuit.ports[*p].name.matches('.').count());
     circuit.nodes[node].ports.iter().copied().min_by_key(depth).expect("a node has ports")
 }
 
+/// Unit modifier of a declaration; empty without a unit.
 fn unit_of(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!("(unit = \"{unit}\")") }
 }
 
+/// Factor from a unit to its SI unit; 1 for unknown units.
 fn factor(unit: &str) -> f64 {
     MeasurementUnit::parse(unit).map_or(1.0, |u| u.factor())
 }
 
+/// A factor with an operator in front; empty for 1.
 fn scaled(operator: &str, factor: f64) -> String {
     if factor == 1.0 { String::new() } else { format!("{operator}{factor:e}") }
 }
 
-/// An input with its type, unit and start; an array as a whole.
+/// Name of the tap behind a cut port.
 fn far_of(port: usize) -> String {
     format!("gap_far_{}", port + 1)
 }
 
+/// Name of the variable for the flow through a cut port.
 fn through_of(port: usize) -> String {
     format!("gap_through_{}", port + 1)
 }
 
+/// Declaration of an input with its type, unit and start. An array is declared with all its elements.
+/// `base`: name without indices; the sizes follow from the largest indices that occur.
 fn input_declaration(circuit: &CircuitTopology, base: &str, input: &ModelInput) -> String {
     let ty = match input.ty {
         ScalarType::Integer => "Integer",

@@ -1,4 +1,12 @@
-//! What the diagnosis sees of a nominal model: components, ports with their units, nodes, inputs and parameters.
+//! Topology of the nominal model: components, ports with their units, nodes, inputs and parameters.
+//!
+//! Enters: the request of the nominal model. Leaves: a [`CircuitTopology`], which `hypotheses` searches for places.
+//! It is read from the instance tree, the connections and the flat equations of the compiler.
+//!
+//! From the equations it derives what an effect must know of a node:
+//! - `fixed`, `driven`: the potential is given, so a flow drawn there changes nothing but the reaction.
+//! - `has_rate`, `has_acceleration`: an effect that needs a derivative adds no state.
+//! - `rigid`, `geared`: nodes at which an effect would explain the same.
 
 use bramah_expr::eval::EvaluationCache;
 use bramah_expr::units::MeasurementUnit;
@@ -14,65 +22,65 @@ use std::collections::{BTreeMap, BTreeSet};
 mod links;
 pub use links::SignalLink;
 
-/// A variable of a port.
+/// A variable with its unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedQuantity {
-    /// Its name inside the connector.
+    /// Its name inside the connector or component.
     pub name: String,
     /// Its unit as written.
     pub unit: String,
 }
 
-/// A physical port: one potential, one flow.
+/// A physical port: a connector with one potential and one flow.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhysicalPort {
-    /// Full name, as in `pump.port_a`.
+    /// Full name, such as `pump.port_a`.
     pub name: String,
     /// Full name of its connector class.
     pub class: String,
-    /// The component that owns it: index into [`CircuitTopology::components`].
+    /// Its component: index into [`CircuitTopology::components`].
     pub component: usize,
-    /// The variable that is equal at joined ports.
+    /// The variable that is equal at connected ports.
     pub potential: NamedQuantity,
-    /// The variable that sums up to zero.
+    /// The variable whose sum over connected ports is zero.
     pub through: NamedQuantity,
-    /// The node it belongs to: index into [`CircuitTopology::nodes`].
+    /// Its node: index into [`CircuitTopology::nodes`].
     pub node: usize,
 }
 
-/// Joined ports.
+/// A node: a set of connected ports.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NodeSet {
-    /// Its ports in declaration order.
+    /// Its ports in the order of declaration.
     pub ports: Vec<usize>,
     /// Its potential, or the rate of it, is given by parameters, time and inputs: a reservoir, a frame, a driven belt.
     pub fixed: bool,
-    /// It is given by an input: what acts on it changes the reaction, which a sensor may show.
+    /// Its potential is given by an input. What acts on it changes only the reaction, which a sensor may measure.
     pub driven: bool,
-    /// The model already contains the time derivative of its potential.
+    /// The model contains the time derivative of its potential.
     pub has_rate: bool,
-    /// The model already contains the second time derivative of its potential.
+    /// The model contains the second time derivative of its potential.
     pub has_acceleration: bool,
-    /// The first of the nodes that are rigidly one with it (both flanges of a mass): what is drawn from one might as
-    /// well be drawn from the other.
+    /// First of the nodes that are rigidly one with it, as the flanges of a mass. What acts on one could act on the
+    /// other.
     pub rigid: usize,
-    /// The first of the nodes whose potentials are bound to each other whatever flows (both sides of a gear): what acts on
-    /// one might as well act on another, with another size.
+    /// First of the nodes whose potentials are bound to its own whatever flows, as the sides of a gear. What acts on
+    /// one could act on the other with another size.
     pub geared: usize,
 }
 
-/// A component instance; entry 0 is the model itself.
+/// A component; entry 0 is the model itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetworkComponent {
-    /// Full name.
+    /// Full name; empty for the model itself.
     pub name: String,
     /// Full name of its class.
     pub class: String,
-    /// Its ports in declaration order.
+    /// Its ports in the order of declaration.
     pub ports: Vec<usize>,
     /// Its Real parameters with their units.
     pub parameters: Vec<NamedQuantity>,
-    /// Those of them that multiply one variable in one law, as conductances and dampings do.
+    /// Those of them that multiply one variable in one equation, as conductances and dampings do.
     pub factors: Vec<NamedQuantity>,
 }
 
@@ -83,15 +91,15 @@ pub struct ModelInput {
     pub name: String,
     /// Its type.
     pub ty: ScalarType,
-    /// Its unit as written, empty if none.
+    /// Its unit as written; empty if none.
     pub unit: String,
-    /// Its start value, or the value it keeps when nothing is given.
+    /// Its start value, or the value it keeps if nothing is given; `None` if the model states none.
     pub start: Option<f64>,
-    /// Its `nominal`.
+    /// Its `nominal`; `None` if the model states none.
     pub nominal: Option<f64>,
 }
 
-/// The places of a model.
+/// Topology of a model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CircuitTopology {
     /// Full name of the class.
@@ -100,21 +108,21 @@ pub struct CircuitTopology {
     pub experiment: ExperimentAnnotation,
     /// Components, parents before children.
     pub components: Vec<NetworkComponent>,
-    /// Physical ports in declaration order.
+    /// Physical ports in the order of declaration.
     pub ports: Vec<PhysicalPort>,
-    /// Connection sets, in the order of their first port.
+    /// Nodes, in the order of their first port.
     pub nodes: Vec<NodeSet>,
-    /// Single connections between two ports, as pairs of port numbers, with the component in which they stand.
+    /// Single connections: two port indices and the index of the component in which the `connect` stands.
     pub connections: Vec<(usize, usize, usize)>,
     /// Inputs of the model.
     pub inputs: Vec<ModelInput>,
     /// Signals that its components receive.
     pub links: Vec<SignalLink>,
-    /// All Real variables and parameters by name, with their units.
+    /// Units of all Real variables and parameters, by name.
     pub units: BTreeMap<String, String>,
 }
 
-/// Reads the places of a model.
+/// Reads the topology of a model. The outcome has the diagnostics of the compiler.
 pub fn circuit(world: &dyn World, request: &Request) -> CompileOutcome<CircuitTopology> {
     let CompileOutcome { sources, diagnostics, value } = inspect(world, request, |instance, network, flat| {
         let circuit = TopologyReader::default().read(instance, network, &flat);
@@ -125,14 +133,19 @@ pub fn circuit(world: &dyn World, request: &Request) -> CompileOutcome<CircuitTo
     CompileOutcome { sources, diagnostics, value }
 }
 
+/// Reader of a topology, with the numbers given to scopes of the instance tree.
 #[derive(Default)]
 struct TopologyReader {
+    /// Topology as far as it is known.
     circuit: CircuitTopology,
+    /// Component index by scope.
     component_of: BTreeMap<u32, usize>,
+    /// Port index by scope.
     port_of: BTreeMap<u32, usize>,
 }
 
 impl TopologyReader {
+    /// Reads the complete topology.
     fn read(mut self, instance: &mut Instance<'_, '_>, network: &Network, flat: &FlatModel) -> CircuitTopology {
         self.circuit.class.clone_from(&flat.class);
         self.circuit.experiment = flat.experiment;
@@ -144,6 +157,7 @@ impl TopologyReader {
         for node in &mut self.circuit.nodes {
             rates.of_node(&potentials, node);
         }
+        // rigid nodes first: geared ones include them
         self.rigid(&rates);
         self.geared(&rates);
         self.factors(flat);
@@ -153,6 +167,7 @@ impl TopologyReader {
         self.circuit
     }
 
+    /// Collects components and their ports. Records and packages are left out.
     fn components(&mut self, instance: &mut Instance<'_, '_>) {
         for scope in bramah_model::network::component_scopes(instance) {
             let template = instance.scope(scope).template.clone();
@@ -176,6 +191,7 @@ impl TopologyReader {
         }
     }
 
+    /// Adds a connector as a port, if it has exactly one potential and one flow.
     fn port(&mut self, instance: &mut Instance<'_, '_>, scope: ScopeId, name: String, class: String) {
         let Some(component) = instance.scope(scope).owner.and_then(|o| self.component_of.get(&o.0)).copied() else {
             return;
@@ -183,6 +199,7 @@ impl TopologyReader {
         let variables = own_variables(instance, scope);
         let real = |i: &u32| {
             let v = &instance.variables[*i as usize];
+            // stream variables and signals of a connector are neither potential nor flow
             let counts = v.ty == ScalarType::Real && v.variability == Variability::Continuous;
             counts && v.causality.is_none() && !v.stream
         };
@@ -203,10 +220,11 @@ impl TopologyReader {
         self.circuit.ports.push(port);
     }
 
-    /// Finds nodes that are one: a component keeps their potentials equal and only adds up what flows in.
+    /// Unites nodes that are rigidly one: a component keeps their potentials equal and only adds up what flows in.
     fn rigid(&mut self, rates: &VariableRelations<'_>) {
         let CircuitTopology { components, ports, nodes, .. } = &mut self.circuit;
         (0..nodes.len()).for_each(|i| nodes[i].rigid = i);
+        // the flows must occur in one equation only, the same for both, so that only their sum counts
         let law =
             |p: &PhysicalPort| rates.only_law(&format!("{}.{}", p.name, p.through.name), &components[p.component].name);
         for c in components.iter() {
@@ -225,7 +243,7 @@ impl TopologyReader {
         }
     }
 
-    /// Finds nodes whose potentials are bound to each other.
+    /// Unites nodes whose potentials are bound to each other.
     fn geared(&mut self, rates: &VariableRelations<'_>) {
         let CircuitTopology { ports, nodes, .. } = &mut self.circuit;
         (0..nodes.len()).for_each(|i| nodes[i].geared = nodes[i].rigid);
@@ -241,7 +259,7 @@ impl TopologyReader {
         }
     }
 
-    /// Marks the parameters that are the factor of a single variable.
+    /// Finds the parameters that multiply a single variable. Parameters without a unit are left out.
     fn factors(&mut self, flat: &FlatModel) {
         let linear = linear_factors(flat);
         for c in &mut self.circuit.components {
@@ -250,6 +268,7 @@ impl TopologyReader {
         }
     }
 
+    /// Makes nodes of connected ports by union-find.
     fn nodes(&mut self, instance: &Instance<'_, '_>, network: &Network) {
         let mut root: Vec<usize> = (0..self.circuit.ports.len()).collect();
         let find = |root: &[usize], mut i: usize| {
@@ -267,6 +286,7 @@ impl TopologyReader {
             let within = self.component_of.get(&c.scope.0).copied().unwrap_or(0);
             self.circuit.connections.push((a, b, within));
             let (a, b) = (find(&root, a), find(&root, b));
+            // the smaller index stays the root, so that nodes come in the order of declaration
             root[a.max(b)] = a.min(b);
         }
         let mut number: BTreeMap<usize, usize> = BTreeMap::new();
@@ -282,18 +302,21 @@ impl TopologyReader {
     }
 }
 
+/// Indices of the scalar variables that belong to a scope itself, not to its components.
 fn own_variables(instance: &Instance<'_, '_>, scope: ScopeId) -> Vec<u32> {
     let elements = instance.scope(scope).elements.iter();
     let nodes = elements.filter_map(|e| if let ElementState::Node(n) = e { Some(*n) } else { None });
     nodes.filter_map(|n| if let InstanceNode::Var(i) = instance.node(n) { Some(*i) } else { None }).collect()
 }
 
+/// A variable with its unit, by its last name.
 fn quantity(instance: &mut Instance<'_, '_>, variable: u32) -> NamedQuantity {
     let full = &instance.variables[variable as usize].name;
     let name = full.rsplit('.').next().unwrap_or(full).to_string();
     NamedQuantity { name, unit: instance.parameters().text_attribute(variable, "unit").unwrap_or_default() }
 }
 
+/// Visible Real parameters of a component.
 fn parameters(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<NamedQuantity> {
     let mut all = own_variables(instance, scope);
     all.retain(|i| {
@@ -303,6 +326,7 @@ fn parameters(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<NamedQuant
     all.into_iter().map(|i| quantity(instance, i)).collect()
 }
 
+/// Inputs of the flat model.
 fn inputs(flat: &FlatModel) -> Vec<ModelInput> {
     let number = |e: Option<ExprId>| e.and_then(|e| flat.exprs.as_num(e));
     let inputs = flat.variables.iter().filter(|v| v.input);
@@ -317,23 +341,32 @@ fn inputs(flat: &FlatModel) -> Vec<ModelInput> {
         .collect()
 }
 
-/// Which variables are equal, which have a derivative in the model, and which are given by parameters alone.
+/// Relations between the variables of the flat model: which are equal, which have derivatives, which are given.
+/// Variables stand for all that are equal to them, by the root of a union-find.
 struct VariableRelations<'a> {
+    /// The flat model.
     flat: &'a FlatModel,
+    /// Union-find over variables that an equation sets equal.
     root: Vec<u32>,
+    /// Roots whose derivative occurs in the model.
     differentiated: BTreeSet<u32>,
+    /// Roots whose second derivative occurs in the model.
     accelerated: BTreeSet<u32>,
-    /// Variables whose derivative parameters give.
+    /// Roots whose derivative is given by parameters, time and inputs.
     steady: BTreeSet<u32>,
+    /// Roots that are given by parameters, time and inputs.
     fixed: BTreeSet<u32>,
-    /// Those of the fixed and steady ones that inputs give.
+    /// Fixed and steady roots in which an input has a part.
     driven: BTreeSet<u32>,
-    /// Potentials that one equation binds to each other, in pairs.
+    /// Pairs of potentials that one equation binds to each other.
     geared: Vec<BTreeSet<u32>>,
+    /// Index of each variable by name.
     index: BTreeMap<&'a str, u32>,
 }
 
 impl<'a> VariableRelations<'a> {
+    /// Derives all relations; `potentials` are the full names of the ports' potentials.
+    /// Equal variables are united first, so that every relation holds for all of them.
     fn of(flat: &'a FlatModel, potentials: &[String]) -> Self {
         let count = u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables");
         let index = (0u32..).zip(&flat.variables).map(|(i, v)| (v.name.as_str(), i)).collect();
@@ -361,15 +394,17 @@ impl<'a> VariableRelations<'a> {
                 }
             }
         }
+        // needs all first derivatives and given variables
         rates.accelerations();
         let potentials = potentials.iter().filter_map(|name| rates.root_of(name)).collect();
         rates.geared = flat.equations.iter().filter_map(|e| rates.bound(e, &potentials)).collect();
+        // behind an ideal gear the other side has the same derivatives
         rates.differentiated = with_geared(rates.differentiated.clone(), &rates.geared);
         rates.accelerated = with_geared(rates.accelerated.clone(), &rates.geared);
         rates
     }
 
-    /// The two potentials that an equation binds to each other whatever flows, as an ideal gear does.
+    /// The two potentials that an equation without other variables binds to each other, as an ideal gear does.
     fn bound(&self, e: &bramah_model::flat::FlatEquation, potentials: &BTreeSet<u32>) -> Option<BTreeSet<u32>> {
         let leaves = self.flat.exprs.dependencies(&[e.lhs, e.rhs]);
         let moving = |v: &&VarId| self.flat.variables[v.index()].variability > Variability::Parameter;
@@ -378,6 +413,7 @@ impl<'a> VariableRelations<'a> {
         (binds && roots.is_subset(potentials)).then_some(roots)
     }
 
+    /// Unites variables that an equation `a = b` sets equal.
     fn unite(&mut self) {
         for e in &self.flat.equations {
             let (Some(a), Some(b)) = (self.variable(e.lhs), self.variable(e.rhs)) else { continue };
@@ -386,7 +422,8 @@ impl<'a> VariableRelations<'a> {
         }
     }
 
-    /// Variables whose derivative is itself differentiated, or given by parameters.
+    /// Finds variables whose derivative is itself differentiated, or given.
+    /// A speed that is given makes its angle steady; a speed that is differentiated makes its angle accelerated.
     fn accelerations(&mut self) {
         for e in &self.flat.equations {
             for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
@@ -406,7 +443,7 @@ impl<'a> VariableRelations<'a> {
         }
     }
 
-    /// A variable that may change in time.
+    /// The continuous variable that an expression consists of.
     fn variable(&self, e: ExprId) -> Option<u32> {
         match self.flat.exprs.node(e) {
             Term::Var(VarId(v)) if self.flat.variables[v as usize].variability == Variability::Continuous => Some(v),
@@ -414,7 +451,7 @@ impl<'a> VariableRelations<'a> {
         }
     }
 
-    /// Given from outside: by parameters, time and inputs.
+    /// Whether an expression is given from outside: by parameters, time and inputs.
     fn constant(&self, e: ExprId) -> bool {
         let leaves = self.flat.exprs.dependencies(&[e]);
         let given = |v: &VarId| {
@@ -424,11 +461,12 @@ impl<'a> VariableRelations<'a> {
         leaves.ders.is_empty() && leaves.pres.is_empty() && leaves.vars.iter().all(given)
     }
 
-    /// Whether an input has a part in it.
+    /// Whether an expression contains an input.
     fn by_input(&self, e: ExprId) -> bool {
         self.flat.exprs.dependencies(&[e]).vars.iter().any(|v| self.flat.variables[v.index()].input)
     }
 
+    /// The root of a variable.
     fn find(&self, mut i: u32) -> u32 {
         while self.root[i as usize] != i {
             i = self.root[i as usize];
@@ -436,12 +474,12 @@ impl<'a> VariableRelations<'a> {
         i
     }
 
-    /// What stands for all variables equal to this one.
+    /// The root of a variable by name.
     fn root_of(&self, name: &str) -> Option<u32> {
         self.index.get(name).map(|&i| self.find(i))
     }
 
-    /// The equation of a component in which a flow occurs, if it is only one.
+    /// Index of the equation of a component in which a flow occurs; `None` if there are none or several.
     fn only_law(&self, through: &str, component: &str) -> Option<usize> {
         let variable = VarId(*self.index.get(through)?);
         let instance = self.flat.instances.iter().position(|i| i.name == component)?;
@@ -453,7 +491,8 @@ impl<'a> VariableRelations<'a> {
         all.all(|(_, e)| !holds(e)).then_some(first)
     }
 
-    /// Whether the potential of a node is fixed, and which of its derivatives are in the model; by the ports' potentials.
+    /// Fills in what is known of a node from the potentials of its ports.
+    /// `potentials`: full name of the potential of every port of the model.
     fn of_node(&self, potentials: &[String], node: &mut NodeSet) {
         for name in node.ports.clone().into_iter().map(|p| &potentials[p]) {
             let Some(&i) = self.index.get(name.as_str()) else { continue };
@@ -466,7 +505,7 @@ impl<'a> VariableRelations<'a> {
     }
 }
 
-/// What has a derivative, and all that is bound to it: behind an ideal gear the speed of its other side is in the model, too.
+/// Roots with a derivative, and all that are bound to them, until nothing is added.
 fn with_geared(mut known: BTreeSet<u32>, geared: &[BTreeSet<u32>]) -> BTreeSet<u32> {
     loop {
         let before = known.len();
@@ -481,7 +520,7 @@ fn with_geared(mut known: BTreeSet<u32>, geared: &[BTreeSet<u32>]) -> BTreeSet<u
     }
 }
 
-/// Names of parameters that occur in one equation, as the factor of one variable: `q = G*dp`.
+/// Names of parameters that occur only as the factor of one variable: `q = G*dp`.
 fn linear_factors(flat: &FlatModel) -> BTreeSet<&str> {
     let mut exprs = flat.exprs.clone();
     let known = known(flat);
@@ -491,6 +530,7 @@ fn linear_factors(flat: &FlatModel) -> BTreeSet<&str> {
         let parameter = |v: &&VarId| flat.variables[v.index()].variability == Variability::Parameter;
         for &p in leaves.vars.iter().filter(parameter) {
             let linear = [e.lhs, e.rhs].into_iter().any(|side| multiplies_one(&known, &mut exprs, side, p));
+            // a parameter that is a factor in one equation and something else in another is none
             met.entry(p.0).and_modify(|l| *l &= linear).or_insert(linear);
         }
     }
@@ -498,8 +538,9 @@ fn linear_factors(flat: &FlatModel) -> BTreeSet<&str> {
     linear.map(|(v, _)| flat.variables[v as usize].name.as_str()).collect()
 }
 
-/// Whether the derivative of a side by a parameter is one variable, or its negative, or a difference of two: seen by
-/// evaluating it, since it may hide behind choices that parameters make.
+/// Whether the derivative of a side by a parameter is one variable, its negative, or a difference of two.
+/// It is evaluated instead of compared as an expression, because it may be hidden behind branches that parameters
+/// choose. `known`: values of parameters and of what follows from them.
 fn multiplies_one(known: &BTreeMap<VarId, f64>, exprs: &mut Exprs, side: ExprId, parameter: VarId) -> bool {
     let leaf = exprs.var(parameter);
     if !exprs.contains(side, leaf) {
@@ -512,6 +553,7 @@ fn multiplies_one(known: &BTreeMap<VarId, f64>, exprs: &mut Exprs, side: ExprId,
     if !leaves.ders.is_empty() || moving.is_empty() || moving.len() > 8 {
         return false;
     }
+    // unequal values of the variables, so that products of two do not look like one
     let at = |shift: f64, bumped: Option<VarId>| {
         let mut values = |v: VarId| {
             let place = moving.iter().position(|m| *m == v).map_or(0.0, |i| (i + 1) as f64);
@@ -522,6 +564,7 @@ fn multiplies_one(known: &BTreeMap<VarId, f64>, exprs: &mut Exprs, side: ExprId,
     let slopes = moving.iter().map(|&v| [0.3, 1.7].map(|x| at(x, Some(v)) - at(x, None)));
     let mut count = 0;
     for [a, b] in slopes {
+        // slopes must be the same at both points and 0 or 1 in size
         if (a - b).abs() > 1e-9 || !(a.abs() < 1e-9 || (a.abs() - 1.0).abs() < 1e-9) {
             return false;
         }
@@ -530,7 +573,8 @@ fn multiplies_one(known: &BTreeMap<VarId, f64>, exprs: &mut Exprs, side: ExprId,
     matches!(count, 1 | 2)
 }
 
-/// Values of parameters, and of variables that an equation gives by them alone in the branches they choose.
+/// Values of parameters, and of variables that an equation gives by known values alone.
+/// Branches that parameters choose are evaluated, so that what is switched off does not count.
 fn known(flat: &FlatModel) -> BTreeMap<VarId, f64> {
     let mut open: Vec<(VarId, ExprId)> = Vec::new();
     for (i, v) in (0u32..).zip(&flat.variables) {
@@ -546,6 +590,7 @@ fn known(flat: &FlatModel) -> BTreeMap<VarId, f64> {
         }
     }
     let mut known = BTreeMap::new();
+    // each pass may make further values computable
     loop {
         let before = known.len();
         open.retain(|(v, e)| {
@@ -561,7 +606,7 @@ fn known(flat: &FlatModel) -> BTreeMap<VarId, f64> {
     }
 }
 
-/// The value of an expression if what is known is enough for it.
+/// Value of an expression; `None` if it needs more than what is known.
 fn steady_value(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId) -> Option<f64> {
     let mut enough = true;
     let value = EvaluationCache::default().value(exprs, e, &mut |leaf| match leaf {
@@ -574,7 +619,7 @@ fn steady_value(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId) -> Optio
     enough.then_some(value)
 }
 
-/// The value of an expression with what is known at its value, and other variables as given.
+/// Value of an expression with known values, and other variables from `moving`.
 fn value_at(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId, moving: &mut dyn FnMut(VarId) -> f64) -> f64 {
     EvaluationCache::default().value(exprs, e, &mut |leaf| match leaf {
         Term::Var(v) => known.get(&v).copied().unwrap_or_else(|| moving(v)),
@@ -583,29 +628,29 @@ fn value_at(known: &BTreeMap<VarId, f64>, exprs: &Exprs, e: ExprId, moving: &mut
 }
 
 impl CircuitTopology {
-    /// The signal inside the model that a component receives by this name.
+    /// The signal inside the model with this name.
     pub fn link(&self, name: &str) -> Option<&SignalLink> {
         self.links.iter().find(|l| l.signal.name == name)
     }
 
-    /// The number that all nodes rigidly one with that of a port share.
+    /// Number shared by all nodes that are rigidly one with that of a port.
     pub fn rigid(&self, port: usize) -> usize {
         self.nodes[self.ports[port].node].rigid
     }
 
-    /// The number that all nodes share whose potentials are bound to that of a port.
+    /// Number shared by all nodes whose potentials are bound to that of a port.
     pub fn geared(&self, port: usize) -> usize {
         self.nodes[self.ports[port].node].geared
     }
 
-    /// All ports of the nodes that are one with that of a port, in declaration order.
+    /// All ports of the nodes that are rigidly one with that of a port, in the order of declaration.
     pub fn same_place(&self, port: usize) -> Vec<usize> {
         let rigid = self.rigid(port);
         (0..self.ports.len()).filter(|&p| self.rigid(p) == rigid).collect()
     }
 }
 
-/// Whether two units measure the same, angle included; scales may differ.
+/// Whether two units measure the same quantity; scales may differ, angles count as a dimension.
 pub fn same_kind(a: &str, b: &str) -> bool {
     match (MeasurementUnit::parse(a), MeasurementUnit::parse(b)) {
         (Ok(x), Ok(y)) => x.dimension == y.dimension && x.angle == y.angle && a.is_empty() == b.is_empty(),

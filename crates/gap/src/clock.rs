@@ -1,16 +1,20 @@
-//! The time that a search may take. Only the caller has a clock.
+//! The time budget of a search.
+//!
+//! The crate never reads a clock itself: the caller passes a closure that says how much time has passed ([`Budget`]).
+//! The search turns it into [`Deadline`]s for the complete search and for single steps.
+//! The rules (60 s, or 500 simulations of a slow model) are those of `docs/gap_method.md`, "Order of the hypotheses".
 
 use super::policy::{BUDGET, ROUND, RUNS, SHARE};
 use rayon::prelude::*;
 use std::fmt;
 use std::time::Duration;
 
-/// The time that a search may take, on the clock of whoever asks for it.
+/// How long a search may take, measured by a clock of the caller.
 #[derive(Clone, Copy)]
 pub struct Budget<'a> {
-    /// How long; where nothing is said a minute, and longer for a slow model.
+    /// Time allowed. `None` means [`BUDGET`] seconds, or the time of [`RUNS`] simulations where that is longer.
     pub time: Option<Duration>,
-    /// How long ago the search began.
+    /// Time since the search began.
     pub gone: &'a (dyn Fn() -> Duration + Sync),
 }
 
@@ -20,13 +24,16 @@ impl fmt::Debug for Budget<'_> {
     }
 }
 
-/// When a search, or a step of it, must come to an end; never where there is no budget.
+/// The moment at which a search, or one step of it, must end. Without a budget it never comes.
 #[derive(Clone, Copy, Default)]
 pub struct Deadline<'a>(Option<DeadlineClock<'a>>);
 
+/// A deadline together with the caller's clock.
 #[derive(Clone, Copy)]
 struct DeadlineClock<'a> {
+    /// Time at which the deadline comes, counted from the beginning of the search.
     time: Duration,
+    /// Time since the search began.
     gone: &'a (dyn Fn() -> Duration + Sync),
 }
 
@@ -37,7 +44,9 @@ impl fmt::Debug for Deadline<'_> {
 }
 
 impl<'a> Deadline<'a> {
-    /// That of a budget; `run` simulates all recordings once, where it has to be known how long that takes.
+    /// Deadline of a budget.
+    /// `run` simulates all recordings once. It is called only where the budget has no time, to measure how slow the
+    /// model is.
     pub fn of(budget: Option<Budget<'a>>, run: impl FnOnce()) -> Self {
         let due = |Budget { time, gone }: Budget<'a>| {
             let usual = || {
@@ -50,7 +59,7 @@ impl<'a> Deadline<'a> {
         Deadline(budget.map(due))
     }
 
-    /// That of one step: a part of what is left.
+    /// Deadline of one step, which may take the part [`SHARE`] of the time that is left.
     pub fn of_step(self) -> Self {
         let step = |due: DeadlineClock<'a>| {
             let now = (due.gone)();
@@ -59,12 +68,14 @@ impl<'a> Deadline<'a> {
         Deadline(self.0.map(step))
     }
 
-    /// Whether it has come.
+    /// Whether the deadline has passed.
     pub fn is_over(self) -> bool {
         self.0.is_some_and(|due| (due.gone)() >= due.time)
     }
 
-    /// What comes of some things, a few at a time until the time is over, but of the first ones at least; and the others.
+    /// Maps `one` over `all`, [`ROUND`] items in parallel at a time, until the deadline.
+    /// The first round always runs, so that at least some result exists.
+    /// Results come first, items for which the time was too short second; both keep their order.
     pub fn rounds<T: Send, R: Send>(self, all: Vec<T>, one: impl Fn(T) -> R + Sync) -> (Vec<R>, Vec<T>) {
         let mut rest = all.into_iter();
         let mut found = Vec::new();

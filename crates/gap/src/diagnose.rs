@@ -1,4 +1,7 @@
-//! A diagnosis from its study to what is shown of it: verdict, words, page, corrected model.
+//! The entry of the crate: from a study file to a [`Diagnosis`] with verdict, words, HTML page and corrected model.
+//!
+//! Enters: a study and its recordings, read through a `World`. Leaves: a [`Diagnosis`], or the diagnostics of what is
+//! wrong. [`fn@diagnose`] and [`diagnose_as`] are called by the library's front and by the command `bramah gap`.
 
 use super::clock::Budget;
 use super::fixed;
@@ -17,22 +20,27 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What a diagnosis came to.
+/// Result of a diagnosis, with everything that is needed to show it.
 pub struct Diagnosis<'a> {
+    /// The study with its problem.
     question: DiagnosisStudy<'a>,
+    /// Recordings that took no part in fitting.
     held: HoldoutData,
+    /// Fitted models and accepted effects.
     found: EffectSearchResult,
+    /// The statement that follows from them.
     verdict: Verdict,
 }
 
-/// How a gap is diagnosed.
+/// Options of a diagnosis; the default is a complete search without a limit of time.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DiagnoseOptions<'a> {
-    /// The folder of the recordings; that of the study where there is none.
+    /// Folder of the recordings; `None` means the folder of the study.
     pub data: Option<&'a Path>,
-    /// How long the search may take, by the caller's clock; until all is weighed where nothing is said.
+    /// Time that the search may take. `None` means that all hypotheses are fitted, however long that takes.
     pub budget: Option<Budget<'a>>,
-    /// This effect alone is fitted, and taken even where a search would refuse it: `Effects.SensorLag@p`.
+    /// If given, only this effect is fitted, and shown even where a search would reject it. Form:
+    /// `Effects.SensorLag@p`.
     pub effect: Option<&'a str>,
 }
 
@@ -54,15 +62,17 @@ pub struct DiagnoseOptions<'a> {
 /// # Errors
 /// What is wrong with the study, its model or its recordings.
 pub fn diagnose<'a>(world: &'a dyn World, study: &Path) -> Result<Diagnosis<'a>, Error> {
+    // nobody watches the progress, so nothing stops the search
     let silent = &mut |_| ControlFlow::Continue(());
     diagnose_as(world, study, DiagnoseOptions::default(), silent).map(|(diagnosis, _)| diagnosis)
 }
 
-/// The same with a choice of folder and effect; `progress` hears of each stage and can stop the search. With the texts that
-/// the warnings of the diagnosis point into.
+/// [`fn@diagnose`] with options and progress.
+/// `progress` is called at the beginning of each stage and can end the search there.
+/// The second value has the texts into which the warnings of the diagnosis point.
 ///
 /// # Errors
-/// As [`diagnose`]; `E507` where `progress` stopped it.
+/// As [`fn@diagnose`]; `E507` if `progress` ended the search.
 pub fn diagnose_as<'a>(
     world: &'a dyn World,
     study: &Path,
@@ -76,6 +86,7 @@ pub fn diagnose_as<'a>(
     let Some(study) = read.value else { return Err(failed(read.diagnostics, sources)) };
     let asked = match question(world, &study, data, &mut sources) {
         Ok(asked) => asked,
+        // an error of the model points into the model's own texts, not into the study
         Err(StudyError { diagnostics, sources: of_model, .. }) => {
             return Err(failed(diagnostics, of_model.unwrap_or(sources)));
         }
@@ -91,10 +102,12 @@ pub fn diagnose_as<'a>(
 }
 
 impl<'a> Diagnosis<'a> {
-    /// Searches for what the model lacks; held recordings only confirm. The folder among the options has been read already.
+    /// Searches for the effects that the model lacks. Held recordings only confirm.
+    /// `options.data` is not used: the recordings have been read.
     ///
     /// # Errors
-    /// The nominal model does not compile or cannot follow a recording, there is no such effect, or `progress` stopped it.
+    /// The nominal model does not compile or its simulation does not reach the end of a recording, the effect asked for
+    /// does not exist, or `progress` ended the search.
     pub fn new(
         question: DiagnosisStudy<'a>,
         held: HoldoutData,
@@ -110,56 +123,58 @@ impl<'a> Diagnosis<'a> {
                 found.ok_or_else(|| bad_data(format!("the model has no values with `{asked}`")))?
             }
         };
-        // The figures are not worth stopping for: they take less than a stage of the search.
+        // The figures take less time than a stage of the search, so a request to stop is ignored here.
         let _ = progress(Stage::Figures);
+        // the time is not known here: `took` sets it later
         let verdict = conclude(problem, &found, &held.recordings, 0.0);
         Ok(Diagnosis { question, held, found, verdict })
     }
 
-    /// Notes in the verdict how long it took, in seconds: only the caller has a clock.
+    /// Writes the duration in seconds into the verdict. Only the caller has a clock.
     pub fn took(&mut self, seconds: f64) {
         self.verdict.seconds = seconds;
     }
 
-    /// What was found, with its figures; serializes as the JSON of `bramah gap`.
+    /// The verdict with its figures; serialised it is the JSON of `bramah gap`.
     pub fn verdict(&self) -> &Verdict {
         &self.verdict
     }
 
-    /// The same in words for people.
+    /// The verdict as text for people.
     pub fn words(&self) -> String {
         words::words(&self.verdict)
     }
 
-    /// The same as one HTML page with network, tables and curves.
+    /// The verdict as one HTML page with network, tables and curves.
     pub fn report(&self) -> String {
         report::report(&self.question.problem, &self.found, &self.verdict, &self.held)
     }
 
-    /// The corrected model, class `Fixed`, with every class it needs, as Modelica text.
+    /// The corrected model as Modelica text: class `Fixed`, with every class that it needs.
     pub fn corrected(&self) -> StageResult<String> {
         fixed::corrected(&self.question.problem, &self.found.last.fit)
     }
 
-    /// Warnings about study and recordings.
+    /// Warnings about the study and its recordings.
     pub fn diagnostics(&self) -> &[Diagnostic] {
         &self.question.diagnostics
     }
 }
 
 impl DiagnosisStudy<'_> {
-    /// The nominal model and the recordings used, signal by signal: the model is simulated from the inputs alone, after
-    /// its initial state was fitted to the first samples.
+    /// A figure of the nominal model and the train recordings, signal by signal.
+    /// The model is simulated from the inputs alone; its initial state is fitted to the first samples.
     ///
     /// # Errors
-    /// The nominal model does not compile, or cannot follow a recording.
+    /// The nominal model does not compile, or its simulation does not reach the end of a recording.
     pub fn compared(&self) -> Result<Figure, Vec<Diagnostic>> {
         let nominal = models::nominal(&self.problem)?;
         report::compared(&self.problem, &nominal).map_err(|(file, time)| said(DiagnosisError::Stops(file, time)))
     }
 }
 
-/// The hypothesis `EFFECT@PLACE`; a mistake of a recording is none.
+/// Index of the hypothesis that `EFFECT@PLACE` names. Errors of recordings cannot be named.
+/// The prefix `Effects.` may be left out, and a place may have any name of its node.
 fn at(all: &[Hypothesis], asked: &str) -> Result<usize, Vec<Diagnostic>> {
     let is_asked = |h: &Hypothesis| {
         let (effect, place) = asked.split_once('@').unwrap_or((asked, ""));
@@ -176,7 +191,7 @@ fn at(all: &[Hypothesis], asked: &str) -> Result<usize, Vec<Diagnostic>> {
     })
 }
 
-/// What stops a diagnosis: the nominal model does not compile, or cannot follow the recordings.
+/// Diagnostics of an error that ended a search.
 fn said(trouble: DiagnosisError) -> Vec<Diagnostic> {
     match trouble {
         DiagnosisError::Model(diagnostics) => diagnostics,
@@ -189,6 +204,7 @@ fn said(trouble: DiagnosisError) -> Vec<Diagnostic> {
     }
 }
 
+/// One diagnostic about the recordings, with this text.
 fn bad_data(text: String) -> Vec<Diagnostic> {
     vec![Diagnostic::new(Code::BadData, text)]
 }

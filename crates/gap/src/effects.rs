@@ -1,4 +1,11 @@
-//! The catalogue of effects: read from the shipped models and from a folder of the study.
+//! The library of effects, read from the shipped package `Effects` and from a folder of the study.
+//!
+//! Enters: a `World` and the user's folder. Leaves: an [`EffectCatalogue`] of [`EffectModel`]s for `hypotheses`.
+//!
+//! An effect is a Modelica class that extends an interface of `Effects.Interfaces` and has a vendor annotation
+//! `__bramah(family = ..., coefficients = ...)`. The classes are flattened once, all in one model, to read units,
+//! bounds, nominal values and derivatives. An effect vanishes exactly at the off values of its coefficients, so that
+//! the model with it contains the model without it.
 
 use super::circuit::NamedQuantity;
 use bramah_expr::{ExprId, ExprNode};
@@ -14,14 +21,14 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Where an effect goes.
+/// How an effect is attached to the network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AttachmentKind {
     /// To one node.
     Shunt,
-    /// Across two ports of a component.
+    /// Between two ports of a component.
     Bridge,
-    /// From a node to one of fixed potential.
+    /// From a node to one of given potential.
     Drain,
     /// Into a connection.
     Series,
@@ -29,26 +36,26 @@ pub enum AttachmentKind {
     Sensor,
     /// Between an input and the model.
     Command,
-    /// Onto a parameter; no model belongs to it.
+    /// To a parameter; no effect model belongs to it.
     Drift,
 }
 
-/// How an effect attaches, from the annotation of the interface it extends.
+/// How an effect attaches, from the annotation of the interface that it extends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectInterface {
-    /// Where it goes.
+    /// Kind of attachment.
     pub attach: AttachmentKind,
-    /// Potentials that it reads, of the ports it is attached to.
+    /// Potentials that it reads, of the ports to which it is attached.
     pub potential: Vec<NamedQuantity>,
-    /// The through variable that it gives (a Series element gets it); none for signals.
+    /// Flow that it gives, or that a Series element reads; `None` for signals.
     pub through: Option<NamedQuantity>,
-    /// The difference of potentials that a Series element gives.
+    /// Difference of potential that a Series element gives; `None` for others.
     pub drop: Option<NamedQuantity>,
-    /// Potentials of further ports of the same component.
+    /// Potentials of further ports of the same component that it reads.
     pub sense: Vec<NamedQuantity>,
-    /// They may belong to any port of the network.
+    /// Those further ports may be any of the network.
     pub anywhere: bool,
-    /// A temperature that it reads, in kelvin.
+    /// Variable of the effect that is a temperature in kelvin; `None` if it reads none.
     pub temperature: Option<String>,
 }
 
@@ -59,29 +66,30 @@ pub struct EffectCoefficient {
     pub name: String,
     /// Its unit; empty means that of the signal, or none.
     pub unit: String,
-    /// Where the effect vanishes exactly.
+    /// Value at which the effect vanishes exactly.
     pub off: f64,
-    /// Least value.
+    /// Lower bound; `None` if unbounded.
     pub min: Option<f64>,
-    /// Greatest value.
+    /// Upper bound; `None` if unbounded.
     pub max: Option<f64>,
-    /// Typical size; for `relative` ones in full scales of the signal.
+    /// Typical size; for `relative` coefficients in full scales of the signal.
     pub nominal: f64,
-    /// Counts in the unit of the signal, `nominal` in its full scales.
+    /// It counts in the unit of the signal.
     pub relative: bool,
-    /// At most what its nodes have of it already.
+    /// It is a part of what its nodes have of it already, and bounded by that.
     pub part: bool,
-    /// Each recording has one of its own, this the one of that number: a phase that follows no variable.
+    /// Index of the recording in which it acts, for coefficients that each recording has of its own (a phase that
+    /// follows no variable); `None` for others.
     pub recording: Option<usize>,
 }
 
 impl EffectCoefficient {
-    /// Its name among those of a hypothesis.
+    /// Its name among the coefficients of a hypothesis.
     pub fn label(&self) -> String {
         self.recording.map_or_else(|| self.name.clone(), |k| format!("{}_{}", self.name, k + 1))
     }
 
-    /// The value at which it stands for the whole effect, if it is a share of one.
+    /// Its value for the complete effect, if it is a share of one; `None` otherwise.
     pub fn whole(&self) -> Option<f64> {
         self.max.filter(|m| m.is_finite() && *m <= 10.0 * self.nominal.abs())
     }
@@ -94,108 +102,108 @@ pub struct ShapeParameter {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// Values to try; for `relative` ones in full scales of the signal.
+    /// Values to start from; for `relative` shapes in full scales of the signal.
     pub grid: Vec<f64>,
-    /// Least value that the effect allows.
+    /// Least value that the effect allows; `None` if unbounded.
     pub min: Option<f64>,
-    /// Greatest value that the effect allows.
+    /// Greatest value that the effect allows; `None` if unbounded.
     pub max: Option<f64>,
-    /// Greatest value that occurs where a corner is: one as wide rounds all of the law.
+    /// Greatest value that occurs where a corner is: a corner as wide rounds all of the law.
     pub occurs: Option<f64>,
-    /// Counts in the unit of the signal, `grid` in its full scales.
+    /// It counts in the unit of the signal.
     pub relative: bool,
-    /// Compared with the potential of the site, or with the difference of its two: values beyond the range that occurs
-    /// make no difference.
+    /// It is compared with the potential of the site, or the difference of its two. Values outside of what occurs have
+    /// no effect.
     pub threshold: bool,
     /// The same, compared with the first potential alone.
     pub level: bool,
-    /// A size of the signal at a sensor or command beyond which the effect acts: values outside of the range that occurs
-    /// make no difference.
+    /// It is a size of the signal beyond which the effect acts. Values outside of what occurs have no effect.
     pub limit: bool,
-    /// A frequency, Hz, of which the recordings have a line that the nominal model has not.
+    /// It is a frequency, Hz, at which the recordings have a spectral line that the nominal model lacks.
     pub line: bool,
-    /// Periods a turn or a stroke: the same effect may come again with another one.
+    /// It is a number of periods per turn or stroke: the same effect may be accepted again with another one.
     pub order: bool,
 }
 
-/// Parameters that take the range of a potential, or of what flows through a Series element.
+/// Two parameters that take the range of a potential, or of what flows through a Series element.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RangeParameters {
-    /// The potential or through variable, by its name in the effect.
+    /// Potential or through variable, by its name in the effect.
     pub of: String,
-    /// It is the size of the potential's rate whose range is taken.
+    /// The range is that of the potential's rate.
     pub rate: bool,
-    /// Parameter for its least value.
+    /// Parameter for the least value.
     pub least: String,
-    /// Parameter for its greatest value.
+    /// Parameter for the greatest value.
     pub most: String,
 }
 
-/// One effect model.
+/// One effect of the library.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EffectModel {
     /// Full name of its class.
     pub class: String,
-    /// Its family, of the closed list.
+    /// Its family.
     pub family: String,
-    /// Its number in the list of effects, empty if it has none.
+    /// Its number in the list of effects; empty if it has none.
     pub id: String,
-    /// What it does, in words.
+    /// What it does, in words: the description of its class.
     pub description: String,
-    /// Where it goes.
+    /// How it attaches.
     pub interface: EffectInterface,
-    /// Linear parameters.
+    /// Linear parameters; at least one.
     pub coefficients: Vec<EffectCoefficient>,
     /// Nonlinear parameters.
     pub shapes: Vec<ShapeParameter>,
-    /// Parameters that take the value of the component's parameter of equal unit.
+    /// Parameters that take the value of a parameter of the component with the same unit.
     pub base: Vec<NamedQuantity>,
-    /// A potential that it reads, or its rate, with the two parameters that take the least and the greatest value that occurs.
+    /// Parameters that take the range of a variable; `None` if there are none.
     pub range: Option<RangeParameters>,
-    /// A parameter that is the pressure of the surroundings: nothing where the model counts pressures from there.
+    /// Parameter for the ambient pressure, which is 0 where the model counts pressures from there; `None` if there is
+    /// none.
     pub surroundings: Option<String>,
     /// Effects of one group are also tried together, with one set of coefficients.
     pub group: Option<String>,
-    /// The law of which it is a form; of these one is at a place.
+    /// The law of which it is a form. Only one form of a law is accepted at a place.
     pub law: Option<String>,
-    /// A Bridge between nodes of which neither is fixed (another effect of the family covers the fixed ones).
+    /// A Bridge only between nodes of which neither is given; another effect of the family covers those.
     pub free_ends: bool,
     /// A Bridge that is tried in both directions.
     pub directed: bool,
-    /// An effect on a command that also fits what a sensor shows.
+    /// An effect on a command that may also act on a measured input.
     pub measured: bool,
-    /// Not tried where an effect of this kind fits.
+    /// It is not tried where an effect of its family fits with this kind of attachment.
     pub without: Option<AttachmentKind>,
-    /// States of its own; inside a connection the order of the system changes with them.
+    /// Number of states of its own.
     pub states: usize,
-    /// It reads the rate of a potential.
+    /// It reads the time derivative of a potential.
     pub needs_rate: bool,
-    /// It reads the second derivative of a potential.
+    /// It reads the second time derivative of a potential.
     pub needs_acceleration: bool,
 }
 
-/// The family of sources that have no form: not hypotheses, but what hypotheses are weighed against.
+/// Family of sources without a form. They are no hypotheses: `capacity` uses those at nodes as test flows.
 const DISTURBANCE: &str = "disturbance";
-/// The family of shapes: they compete with the effects, and where one of them wins, nothing known explains the gap.
+/// Family of shapes. They compete with effects; where a shape wins, no known effect explains the gap.
 const SHAPE: &str = "shape";
 
 impl EffectModel {
-    /// Whether it only says what shape a gap has that no effect explains.
+    /// Whether it is a shape without a physical name.
     pub fn is_shape(&self) -> bool {
         self.family == SHAPE
     }
 }
 
-/// What may be missing, in the order of the packages: what is usual on machines comes first.
+/// All effects, in the order of their packages: what is common on machines comes first.
 #[derive(Clone, Debug)]
 pub struct EffectCatalogue {
-    /// Explanations.
+    /// Effects and shapes.
     pub effects: Vec<Arc<EffectModel>>,
-    /// The shipped sources without form, one for each kind of place.
+    /// Shipped disturbance sources, one for each kind of place.
     pub disturbances: Vec<Arc<EffectModel>>,
 }
 
-/// Reads the shipped effects and those of a folder.
+/// Reads the shipped effects and those of a folder. Effects that cannot be used are left out with a diagnostic.
 pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> CompileOutcome<EffectCatalogue> {
     let CompileOutcome { sources, diagnostics, value } = everything(world, folder);
     let parted = |all: Vec<Arc<EffectModel>>| {
@@ -206,35 +214,47 @@ pub fn catalogue(world: &dyn World, folder: Option<&Path>) -> CompileOutcome<Eff
     CompileOutcome { sources, diagnostics, value: value.map(parted) }
 }
 
+/// Reads all effects, disturbances included.
 fn everything(world: &dyn World, folder: Option<&Path>) -> CompileOutcome<Vec<Arc<EffectModel>>> {
     let mut reader = CatalogueReader::default();
     reader.folder(&ShippedWorld, Path::new("components/Effects"), "Effects");
     if let Some(folder) = folder {
+        // the shipped effects come first, so that they keep their order among the hypotheses
         let package = world.read(&folder.join("package.mo")).is_ok();
+        // a folder with `package.mo` is a package of its own name, any other one a loose set of classes
         let prefix = folder.file_name().filter(|_| package).map(|n| n.to_string_lossy().into_owned());
         reader.folder(world, folder, prefix.as_deref().unwrap_or(""));
     }
     reader.finish(world, folder)
 }
 
-/// A class found in the folders, with its annotation.
+/// A class found in the folders.
 struct EffectClass {
+    /// Full name.
     class: String,
+    /// Its description string.
     description: String,
+    /// It is partial, so that it is an interface or base only.
     partial: bool,
+    /// Names of its base classes as written.
     extends: Vec<String>,
+    /// Content of its vendor annotation.
     annotation: Modification,
 }
 
+/// Reader of the folders.
 #[derive(Default)]
 struct CatalogueReader {
+    /// Classes by full name.
     classes: BTreeMap<String, EffectClass>,
-    /// Their names as they were read.
+    /// Full names in the order of reading.
     order: Vec<String>,
+    /// Effects that cannot be used.
     diagnostics: Vec<Diagnostic>,
 }
 
 impl CatalogueReader {
+    /// Reads a folder and its subfolders. `prefix`: full name of the package around.
     fn folder(&mut self, world: &dyn World, path: &Path, prefix: &str) {
         for (name, is_folder) in in_order(world, path) {
             let inner = path.join(&name);
@@ -248,10 +268,13 @@ impl CatalogueReader {
         }
     }
 
+    /// Adds a class and the classes inside it. `package`: it stands in a `package.mo`, whose name is that of the
+    /// folder.
     fn class(&mut self, class: &ast::Class, prefix: &str, package: bool) {
         let ClassBody::Long(body) = &class.body else { return };
         let full = if package { prefix.to_string() } else { joined(prefix, class.name.name.as_str()) };
         for e in &body.elements {
+            // effects may be nested in a class that is itself a package
             if let ElementKind::Class(inner) = &e.kind {
                 self.class(inner, &full, false);
             }
@@ -272,7 +295,7 @@ impl CatalogueReader {
         self.classes.insert(full, found);
     }
 
-    /// The interface that a class extends, near or far.
+    /// The interface that a class is or extends, directly or through bases: the class with an `attach` annotation.
     fn interface<'a>(&'a self, class: &'a EffectClass) -> Option<&'a EffectClass> {
         if argument(&class.annotation, "attach").is_some() {
             return Some(class);
@@ -280,6 +303,7 @@ impl CatalogueReader {
         class.extends.iter().find_map(|base| self.interface(self.resolve(&class.class, base)?))
     }
 
+    /// The class that `name` means inside class `from`: looked up in the packages around, from inside out.
     fn resolve(&self, from: &str, name: &str) -> Option<&EffectClass> {
         let mut around = from;
         while let Some((outer, _)) = around.rsplit_once('.') {
@@ -291,7 +315,9 @@ impl CatalogueReader {
         self.classes.get(name)
     }
 
+    /// Flattens the effects and reads their attributes.
     fn finish(mut self, world: &dyn World, folder: Option<&Path>) -> CompileOutcome<Vec<Arc<EffectModel>>> {
+        // abstract classes and helper models have no family and are no effects
         let wanted: Vec<(&EffectClass, &EffectClass)> = self
             .order
             .iter()
@@ -301,6 +327,7 @@ impl CatalogueReader {
             .collect();
         let names: Vec<&str> = wanted.iter().map(|(f, _)| f.class.as_str()).collect();
         let CompileOutcome { sources, diagnostics, value } = flatten_all(world, folder, &names);
+        // one compilation of all effects instead of one for each
         let Some(flat) = value else { return CompileOutcome { sources, diagnostics, value: None } };
         let read = EffectAttributes::of(&flat);
         let mut effects = Vec::new();
@@ -308,6 +335,7 @@ impl CatalogueReader {
         for (number, (found, interface)) in wanted.iter().enumerate() {
             match effect(found, interface, &read, number) {
                 Ok(e) => effects.push(Arc::new(e)),
+                // one unusable effect of the user must not prevent the diagnosis
                 Err(why) => bad.push(unusable(&found.class, &why)),
             }
         }
@@ -316,7 +344,8 @@ impl CatalogueReader {
     }
 }
 
-/// What a folder holds, in the order of its package; what that does not name comes last.
+/// Entries of a folder and whether each is a folder, in the order of `package.order`.
+/// Entries not listed there come last, by name.
 fn in_order(world: &dyn World, path: &Path) -> Vec<(String, bool)> {
     let order = world.read(&path.join("package.order")).unwrap_or_default();
     let names: Vec<&str> = order.lines().map(str::trim).collect();
@@ -329,12 +358,13 @@ fn in_order(world: &dyn World, path: &Path) -> Vec<(String, bool)> {
     all
 }
 
+/// Diagnostic for an effect that cannot be used.
 fn unusable(class: &str, why: &str) -> Diagnostic {
     Diagnostic::new(Code::BadModel, format!("`{class}` cannot be used as an effect: {why}"))
         .help("an effect extends one of `Effects.Interfaces` and carries `annotation(__bramah(family = \"...\", coefficients = {\"...\"}))`")
 }
 
-/// One model that holds every effect once, named `e0`, `e1`, ...
+/// Flattens one model that holds every effect once, named `e0`, `e1`, ...
 fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> CompileOutcome<FlatModel> {
     let mut text = String::from("model Catalogue\n");
     for (i, name) in names.iter().enumerate() {
@@ -349,7 +379,7 @@ fn flatten_all(world: &dyn World, folder: Option<&Path>, names: &[&str]) -> Comp
     CompileOutcome { sources, diagnostics, value: value.map(|f| f.flat) }
 }
 
-/// Makes the classes of the user's folder known.
+/// Makes the classes of the user's folder known to a request.
 pub fn own_classes(world: &dyn World, folder: Option<&Path>, request: &mut Request) {
     let Some(folder) = folder else { return };
     if world.read(&folder.join("package.mo")).is_ok() {
@@ -361,21 +391,25 @@ pub fn own_classes(world: &dyn World, folder: Option<&Path>, request: &mut Reque
 
 /// What the flat catalogue says about the variables and equations of each effect.
 struct EffectAttributes<'a> {
+    /// The flat catalogue.
     flat: &'a FlatModel,
+    /// Variables by name.
     index: BTreeMap<&'a str, &'a FlatVariable>,
     /// Names of variables whose derivative occurs.
     differentiated: BTreeSet<String>,
-    /// Variables that are the derivative of another.
+    /// Variables that are defined as the derivative of another.
     rate_of: BTreeMap<String, String>,
 }
 
 impl<'a> EffectAttributes<'a> {
+    /// Reads the equations of the flat catalogue.
     fn of(flat: &'a FlatModel) -> Self {
         let name = |v: bramah_expr::VarId| flat.variables[v.index()].name.clone();
         let mut differentiated = BTreeSet::new();
         let mut rate_of = BTreeMap::new();
         for e in &flat.equations {
             for side in [e.lhs, e.rhs] {
+                // derivatives in any position count, `rate_of` only in `v = der(x)`
                 differentiated.extend(flat.exprs.derivatives(side).into_iter().map(name));
             }
             for (one, other) in [(e.lhs, e.rhs), (e.rhs, e.lhs)] {
@@ -388,20 +422,30 @@ impl<'a> EffectAttributes<'a> {
         EffectAttributes { flat, index, differentiated, rate_of }
     }
 
+    /// A variable of the effect of this number.
+    ///
+    /// # Errors
+    /// The effect has no such variable.
     fn variable(&self, number: usize, name: &str) -> Result<&'a FlatVariable, String> {
         self.index.get(format!("e{number}.{name}").as_str()).copied().ok_or_else(|| format!("it has no `{name}`"))
     }
 
+    /// A variable of an effect with its unit.
     fn quantity(&self, number: usize, name: &str) -> Result<NamedQuantity, String> {
         let unit = self.variable(number, name)?.unit.as_deref().unwrap_or("").to_string();
         Ok(NamedQuantity { name: name.to_string(), unit })
     }
 
+    /// Value of an expression that is a number.
     fn number(&self, e: Option<ExprId>) -> Option<f64> {
         e.and_then(|e| self.flat.exprs.as_num(e))
     }
 }
 
+/// Reads one effect from its class, its interface and the flat catalogue.
+///
+/// # Errors
+/// What is wrong with its annotation.
 fn effect(
     found: &EffectClass,
     interface: &EffectClass,
@@ -411,6 +455,7 @@ fn effect(
     let own = &found.annotation;
     let interface = interface_of(&interface.annotation, own, read, number)?;
     let relative: BTreeSet<String> = texts(own, "relative").into_iter().collect();
+    // flags of the annotation are texts: present means true
     let mut effect = EffectModel {
         class: found.class.clone(),
         family: text(own, "family").unwrap_or_default(),
@@ -436,6 +481,7 @@ fn effect(
     Ok(effect)
 }
 
+/// Reads the annotation `range`: a variable and two parameters.
 fn range(own: &Modification, read: &EffectAttributes<'_>, number: usize) -> Result<Option<RangeParameters>, String> {
     let mut names = texts(own, "range").into_iter();
     match (names.next(), names.next(), names.next(), names.next()) {
@@ -454,7 +500,7 @@ fn range(own: &Modification, read: &EffectAttributes<'_>, number: usize) -> Resu
     }
 }
 
-/// Finds out which derivatives an effect uses.
+/// Finds which derivatives of potentials an effect uses, and counts its own states.
 fn rates(effect: &mut EffectModel, read: &EffectAttributes<'_>, number: usize) {
     let prefix = format!("e{number}.");
     let potentials: BTreeSet<String> = effect
@@ -464,6 +510,7 @@ fn rates(effect: &mut EffectModel, read: &EffectAttributes<'_>, number: usize) {
         .chain(&effect.interface.sense)
         .map(|q| format!("{prefix}{}", q.name))
         .collect();
+    // a derivative of anything but a potential is a state of the effect
     for name in read.differentiated.range(prefix.clone()..).take_while(|n| n.starts_with(&prefix)) {
         if potentials.contains(name) {
             effect.needs_rate = true;
@@ -475,6 +522,8 @@ fn rates(effect: &mut EffectModel, read: &EffectAttributes<'_>, number: usize) {
     }
 }
 
+/// The interface that a class is or extends, directly or through bases: the class with an `attach` annotation.
+/// `None` for a class that extends no interface, which is then no effect.
 fn interface_of(
     base: &Modification,
     own: &Modification,
@@ -495,6 +544,7 @@ fn interface_of(
     })
 }
 
+/// Kind of attachment by its name.
 fn attach(name: &str) -> Option<AttachmentKind> {
     Some(match name {
         "Shunt" => AttachmentKind::Shunt,
@@ -507,6 +557,11 @@ fn attach(name: &str) -> Option<AttachmentKind> {
     })
 }
 
+/// Reads the annotation `coefficients`, a list of parameter names. Bounds, unit and typical size are those of the
+/// parameters; the off value is their binding.
+///
+/// # Errors
+/// The list is empty, or a parameter is missing or has no `nominal`.
 fn coefficients(
     own: &Modification,
     read: &EffectAttributes<'_>,
@@ -520,6 +575,7 @@ fn coefficients(
     let one = |name: String| {
         let v = read.variable(number, &name)?;
         let off = read.number(v.binding).unwrap_or(0.0);
+        // without a typical size there is no scale for the fit
         let nominal = read.number(v.nominal).ok_or_else(|| format!("`{name}` has no `nominal`"))?;
         Ok(EffectCoefficient {
             unit: v.unit.as_deref().unwrap_or("").to_string(),
@@ -536,6 +592,11 @@ fn coefficients(
     names.into_iter().map(one).collect()
 }
 
+/// Reads the annotation `shapes = (name = {values}, ...)`. Bounds and unit are those of the parameters; flags such as
+/// `threshold` are lists of names.
+///
+/// # Errors
+/// A grid is no list of numbers, or a parameter is missing.
 fn shapes(
     own: &Modification,
     read: &EffectAttributes<'_>,
@@ -571,7 +632,7 @@ fn shapes(
     list.arguments.iter().map(one).collect()
 }
 
-/// What stands in `__bramah(...)`.
+/// Content of `__bramah(...)`.
 fn vendor(annotation: Option<&Modification>) -> Option<&Modification> {
     match &argument(annotation?, "__bramah")?.kind {
         ModificationArgumentKind::Modify { modification, .. } => modification.as_ref(),
@@ -579,6 +640,7 @@ fn vendor(annotation: Option<&Modification>) -> Option<&Modification> {
     }
 }
 
+/// Argument of a modification by name.
 fn argument<'a>(modification: &'a Modification, name: &str) -> Option<&'a ModificationArgument> {
     modification.arguments.iter().find(|a| match &a.kind {
         ModificationArgumentKind::Modify { path, .. } => path.parts.len() == 1 && path.parts[0].name == name,
@@ -586,6 +648,7 @@ fn argument<'a>(modification: &'a Modification, name: &str) -> Option<&'a Modifi
     })
 }
 
+/// Value of an argument.
 fn value<'a>(modification: &'a Modification, name: &str) -> Option<&'a Expr> {
     match &argument(modification, name)?.kind {
         ModificationArgumentKind::Modify { modification: Some(m), .. } => m.value.as_ref(),
@@ -593,6 +656,7 @@ fn value<'a>(modification: &'a Modification, name: &str) -> Option<&'a Expr> {
     }
 }
 
+/// Text of an argument.
 fn text(modification: &Modification, name: &str) -> Option<String> {
     match &value(modification, name)?.kind {
         ExprKind::String(s) => Some(s.to_string()),
@@ -600,12 +664,14 @@ fn text(modification: &Modification, name: &str) -> Option<String> {
     }
 }
 
+/// Texts of an argument that is a list; empty if it is none.
 fn texts(modification: &Modification, name: &str) -> Vec<String> {
     let Some(ExprKind::Array(items)) = value(modification, name).map(|v| &v.kind) else { return Vec::new() };
     let string = |e: &Expr| if let ExprKind::String(s) = &e.kind { Some(s.to_string()) } else { None };
     items.iter().filter_map(string).collect()
 }
 
+/// Full name of a class in a package.
 fn joined(prefix: &str, name: &str) -> String {
     if prefix.is_empty() { name.to_string() } else { format!("{prefix}.{name}") }
 }

@@ -1,4 +1,7 @@
-//! How large the gap is, as it is: root mean squares of measured minus simulated. Nothing is subtracted from them.
+//! Figures of the gap: root mean squares of measured minus simulated. No noise is subtracted.
+//!
+//! Enters: residuals of models on recordings. Leaves: the `gap` and `open` parts of the verdict. Called by
+//! `verdict::conclude`.
 
 use super::data::RecordingData;
 use super::estimate::candidate::RecordingResiduals;
@@ -7,20 +10,21 @@ use super::problem::DiagnosisProblem;
 use super::verdict::{ModelGaps, OpenGap, OptionalNumber, RoleGaps, SignalGap};
 use std::collections::BTreeMap;
 
-/// A gap within so many standard deviations of the sensor's noise is closed: hardly any sample of a model without fault
-/// lies further off.
+/// A gap within so many standard deviations of the sensor's noise is closed: hardly any sample of a correct model lies
+/// further off.
 const CLOSED_NOISE: f64 = 3.0;
 /// A gap within this part of the signal's range is closed: the class of a good sensor.
 const CLOSED_RANGE: f64 = 2.5e-3;
 
-/// What one model leaves of each recording.
+/// Squared residuals of one model on some recordings.
 pub struct GapFigures {
-    /// Per recording and signal the sum of squares and the number of samples, SI; `None` where the run stops early.
+    /// Per recording and signal the sum of squares and the number of samples, SI; `None` where the simulation stops
+    /// early.
     recordings: Vec<Option<Vec<(f64, f64)>>>,
 }
 
 impl GapFigures {
-    /// From the errors of a model behind the beginning, a recording each.
+    /// From the residuals of a model, one entry per recording.
     pub fn of(errors: &[Option<RecordingResiduals>]) -> Self {
         let signal = |e: &Vec<f64>| {
             let known = e.iter().filter(|v| !v.is_nan());
@@ -29,7 +33,7 @@ impl GapFigures {
         GapFigures { recordings: errors.iter().map(|e| Some(e.as_ref()?.iter().map(signal).collect())).collect() }
     }
 
-    /// RMS of a signal over all recordings, SI; `None` where a run stops early, or nothing was measured.
+    /// RMS of a signal over all recordings, SI; `None` if a simulation stops early or nothing was measured.
     pub fn signal(&self, i: usize) -> OptionalNumber {
         let mut all = (0.0, 0.0);
         for r in &self.recordings {
@@ -39,7 +43,8 @@ impl GapFigures {
         (all.1 > 0.0).then(|| (all.0 / all.1).sqrt())
     }
 
-    /// RMS over the signals of their parts of full scale; signals that were not measured do not count.
+    /// RMS over the signals of their parts of full scale; signals without samples do not count.
+    /// `None` if a simulation stops early or nothing was measured.
     pub fn total(&self, full_scale: &[f64]) -> OptionalNumber {
         if self.recordings.iter().any(Option::is_none) {
             return None;
@@ -49,7 +54,7 @@ impl GapFigures {
         (!parts.is_empty()).then(|| (parts.iter().sum::<f64>() / parts.len() as f64).sqrt())
     }
 
-    /// The number of recordings in which a signal's gap is wider than a bound.
+    /// Number of recordings in which a signal's RMS exceeds a bound, SI, or the simulation stops early.
     fn wider(&self, i: usize, bound: f64) -> usize {
         let wide = |r: &&Option<Vec<(f64, f64)>>| match r {
             Some(signals) => signals[i].1 > 0.0 && (signals[i].0 / signals[i].1).sqrt() > bound,
@@ -59,13 +64,13 @@ impl GapFigures {
     }
 }
 
-/// Signals at which a model leaves an open gap on these recordings, wider than sensor and range allow; the widest part of
-/// its range first.
+/// Signals at which a model leaves an open gap, the largest part of the range first.
 pub fn open(problem: &DiagnosisProblem<'_>, left: &GapFigures, recordings: &[RecordingData]) -> Vec<OpenGap> {
     let stops = left.recordings.iter().any(Option::is_none);
     let gap = |(i, signal): (usize, &SensorSignal)| {
         let (rms, range, shown) = (left.signal(i), range(recordings, i), &problem.shown[i]);
         let bound = (CLOSED_NOISE * problem.noise_floor[i]).max(CLOSED_RANGE * range);
+        // a simulation that stops early leaves every signal open
         let wide = rms.map_or(stops, |rms| rms > bound);
         wide.then(|| OpenGap {
             signal: signal.name.clone(),
@@ -81,14 +86,14 @@ pub fn open(problem: &DiagnosisProblem<'_>, left: &GapFigures, recordings: &[Rec
     found
 }
 
-/// How far a signal moves in recordings, SI; its size where it stands still.
+/// Range of a signal over recordings, SI; its absolute value where it stands still. Never 0.
 fn range(recordings: &[RecordingData], i: usize) -> f64 {
     let values = || recordings.iter().flat_map(|r| r.signals[i].iter().copied()).filter(|v| !v.is_nan());
     let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     if high > low { high - low } else { high.abs().max(f64::MIN_POSITIVE) }
 }
 
-/// The figures of three models (nominal, within tolerances, with effects) on recordings of one kind.
+/// Figures of three models (nominal, within tolerances, with effects) on recordings of one role.
 pub fn side(problem: &DiagnosisProblem<'_>, models: [&GapFigures; 3], recordings: &[RecordingData]) -> RoleGaps {
     let columns = |of: &dyn Fn(&GapFigures) -> OptionalNumber| {
         let [nominal, tolerances, effects] = models.map(of);

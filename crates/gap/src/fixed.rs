@@ -1,7 +1,8 @@
-//! The corrected model in one file: every class that it uses, and last the class `Fixed`.
+//! The corrected model in one Modelica file: every class that it uses, and last the class `Fixed`.
 //!
-//! The classes are those that the compiler read. Connections that a Series element cuts are removed from the copy of
-//! the nominal class. Only `Modelica` itself is left out, which every tool brings along.
+//! Enters: the fitted model and the request of the nominal one. Leaves: the text. The classes are those that the
+//! compiler read. Connections that a Series element cuts are removed from the copy of the nominal class. `Modelica`
+//! itself is left out, since every tool has it. Called by `diagnose`.
 
 use super::augment::{AugmentationForm, HypothesisInstance, SOURCE, broken, cut, request, written};
 use super::circuit::CircuitTopology;
@@ -19,13 +20,13 @@ use bramah_syntax::world::World;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// The name of the class.
+/// Name of the corrected class.
 pub const CLASS: &str = "Fixed";
 
-/// Writes the file. Attached drifts (family `parameter`) set their parameter to their value.
+/// Writes the file for given hypotheses. Hypotheses of family `parameter` set their parameter to their value.
 ///
 /// # Errors
-/// Those of the compiler, or a connection that was to be cut and is not found.
+/// Those of the compiler, or a connection that must be cut and is not found.
 pub fn fixed(
     world: &dyn World,
     nominal: &Request,
@@ -37,11 +38,11 @@ pub fn fixed(
     write(world, nominal, folder, circuit, attached, signals, &drifts(attached))
 }
 
-/// Writes a model as it was fitted: its effects and the parameters within their tolerances, both with their fitted
-/// values. It starts as the nominal model does.
+/// Writes a fitted model: its effects and its tolerance parameters, both with fitted values. It starts as the nominal
+/// model.
 ///
-/// A parameter inside an array of components cannot be set by name in Modelica and keeps its nominal value; a comment at
-/// the head of the file names it.
+/// A parameter inside an array of components cannot be set by name in Modelica and keeps its nominal value; a comment
+/// at the head of the file names it.
 ///
 /// # Errors
 /// As [`fixed`].
@@ -53,6 +54,7 @@ pub fn corrected(problem: &DiagnosisProblem<'_>, fit: &ModelFit) -> StageResult<
     let mut values = drifts(&attached);
     let mut left = String::new();
     for (t, value) in problem.tolerances.iter().zip(&theta).filter(|(t, value)| **value != t.nominal) {
+        // Modelica has no modifier for one element of an array of components
         if t.name.contains('[') {
             left.push_str(&format!("// not set, inside an array: {} = {value:e}\n", t.name));
         } else if !values.iter().any(|(n, _)| *n == t.name) {
@@ -64,6 +66,8 @@ pub fn corrected(problem: &DiagnosisProblem<'_>, fit: &ModelFit) -> StageResult<
     StageResult { value: file.value.map(|text| format!("{left}{text}")), diagnostics: file.diagnostics }
 }
 
+/// Writes the file with these values of parameters.
+/// The model is compiled once to learn which files it uses; their classes are then copied into the text.
 fn write(
     world: &dyn World,
     nominal: &Request,
@@ -75,6 +79,7 @@ fn write(
 ) -> StageResult<String> {
     let annotation = experiment(&circuit.experiment);
     let form = |cut| AugmentationForm { class: CLASS, cut, drifts, annotation: annotation.clone() };
+    // flattened once with `break` clauses, to learn which classes the model uses
     let with_breaks = written(circuit, attached, signals, form(false));
     let (overlay, request) = request(world, nominal, folder, &with_breaks, CLASS);
     let outcome = flatten(&overlay, &request);
@@ -90,10 +95,12 @@ fn write(
             return StageResult::failed(vec![Diagnostic::new(Code::BadModel, text)]);
         }
     }
+    // the copied class has lost the connections, so the text needs no `break`
     let own = written(circuit, attached, signals, form(true));
     StageResult::new(format!("{}\n{}", StoredDefinition { within: None, classes: classes.top }, own.text), Vec::new())
 }
 
+/// Parameters that hypotheses set, with their values.
 fn drifts(attached: &[HypothesisInstance<'_>]) -> Vec<(String, f64)> {
     let mut drifts = Vec::new();
     for a in attached {
@@ -106,6 +113,7 @@ fn drifts(attached: &[HypothesisInstance<'_>]) -> Vec<(String, f64)> {
     drifts
 }
 
+/// The `experiment` annotation of the class.
 fn experiment(e: &ExperimentAnnotation) -> String {
     let fields =
         [("StartTime", e.start_time), ("StopTime", e.stop_time), ("Interval", e.interval), ("Tolerance", e.tolerance)];
@@ -113,20 +121,23 @@ fn experiment(e: &ExperimentAnnotation) -> String {
     format!("  annotation(experiment({}));\n", fields.join(", "))
 }
 
-/// The classes read, each inside the package it belongs to.
+/// The classes that were read, each inside its package.
 struct PackageClasses {
+    /// Classes and packages of the top level.
     top: Vec<Class>,
 }
 
 impl PackageClasses {
+    /// Parses all files that the compiler read and nests their classes. Packages are recognised by their `package.mo`.
     fn of(sources: &Sources) -> Self {
         let packages: BTreeSet<&Path> = sources.iter().filter_map(|s| package_folder(&s.path)).collect();
         let mut files: Vec<(Vec<String>, bool, &str)> = Vec::new();
+        // the augmented text itself is written anew at the end
         for s in sources.iter().filter(|s| s.path.ends_with(".mo") && s.path != SOURCE) {
             let is_package = package_folder(&s.path).is_some();
             files.push((around(Path::new(&s.path), &packages, is_package), is_package, &s.text));
         }
-        // Packages before what lies in them.
+        // packages come before the classes inside them
         files.sort_by_key(|(around, is_package, _)| (around.len(), !is_package));
         let mut classes = PackageClasses { top: Vec::new() };
         for (around, _, text) in files {
@@ -139,8 +150,10 @@ impl PackageClasses {
         classes
     }
 
+    /// Adds a class to the package with this path; to the top level if there is none.
     fn insert(&mut self, around: &[String], class: Class) {
         let Some(body) = self.find(around).map(|c| &mut c.body) else {
+            // a class that two paths reach is added once
             if !self.top.iter().any(|c| c.name.name == class.name.name) {
                 self.top.push(class);
             }
@@ -152,6 +165,7 @@ impl PackageClasses {
         }
     }
 
+    /// The class with this path.
     fn find(&mut self, path: &[String]) -> Option<&mut Class> {
         let (first, rest) = path.split_first()?;
         let mut class = self.top.iter_mut().find(|c| c.name.name == first.as_str())?;
@@ -161,7 +175,8 @@ impl PackageClasses {
         Some(class)
     }
 
-    /// Removes a connection from a class or from one that it extends; says whether it was there.
+    /// Removes a connection from a class or from one of its base classes; `true` if it was found.
+    /// `ends`: names of the two ports, in either order.
     fn disconnect(&mut self, class: &str, ends: [&str; 2]) -> bool {
         let path: Vec<String> = class.split('.').map(String::from).collect();
         let Some(found) = self.find(&path) else { return false };
@@ -172,6 +187,7 @@ impl PackageClasses {
             return true;
         }
         let bases: Vec<String> = body.elements.iter().filter_map(base).collect();
+        // names of base classes are looked up in the packages around, from inside out
         bases.into_iter().any(|base| {
             let outer = (0..path.len()).rev().map(|n| [&path[..n], std::slice::from_ref(&base)].concat().join("."));
             outer.collect::<Vec<_>>().into_iter().any(|name| self.disconnect(&name, ends))
@@ -179,13 +195,14 @@ impl PackageClasses {
     }
 }
 
-/// The folder of a `package.mo`.
+/// Folder of a `package.mo`; `None` for other files.
 fn package_folder(path: &str) -> Option<&Path> {
     let path = Path::new(path);
     (path.file_name()? == "package.mo").then(|| path.parent()).flatten()
 }
 
-/// Names of the packages around the class of a file.
+/// Names of the packages around the class of a file, from outside in. The class of a `package.mo` is the folder itself,
+/// so its own folder does not count.
 fn around(file: &Path, packages: &BTreeSet<&Path>, is_package: bool) -> Vec<String> {
     let mut folder: PathBuf = file.parent().unwrap_or(Path::new("")).to_path_buf();
     if is_package {
@@ -200,6 +217,7 @@ fn around(file: &Path, packages: &BTreeSet<&Path>, is_package: bool) -> Vec<Stri
     names
 }
 
+/// A class inside another one.
 fn nested<'a>(class: &'a mut Class, name: &str) -> Option<&'a mut Class> {
     let ClassBody::Long(body) = &mut class.body else { return None };
     body.elements.iter_mut().find_map(|e| match &mut e.kind {
@@ -208,6 +226,7 @@ fn nested<'a>(class: &'a mut Class, name: &str) -> Option<&'a mut Class> {
     })
 }
 
+/// Name of the base class of an `extends` element.
 fn base(element: &Element) -> Option<String> {
     match &element.kind {
         ElementKind::Extends(x) => Some(x.base.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")),
@@ -215,12 +234,14 @@ fn base(element: &Element) -> Option<String> {
     }
 }
 
+/// Whether an equation connects these two ends, in either order.
 fn connects(equation: &Equation, ends: [&str; 2]) -> bool {
     let EquationKind::Connect(a, b) = &equation.kind else { return false };
     let found = [name(a), name(b)];
     found == ends || (found[0] == ends[1] && found[1] == ends[0])
 }
 
+/// Text of a reference; empty for other expressions.
 fn name(e: &Expr) -> String {
     match &e.kind {
         ExprKind::Reference(_) => e.to_string(),
@@ -228,7 +249,7 @@ fn name(e: &Expr) -> String {
     }
 }
 
-/// Only `Fixed` is to be run.
+/// Removes `experiment` annotations of a class and of classes inside it: only `Fixed` is meant to be simulated.
 fn strip_experiment(class: &mut Class) {
     if let Some(Modification { arguments, .. }) = &mut class.annotation {
         arguments.retain(

@@ -1,4 +1,11 @@
-//! The network writes the hypotheses: every effect at every place where its ports and units fit.
+//! Hypotheses: every effect of the library at every place of the network where its ports and units fit.
+//!
+//! Enters: the places of the model ([`CircuitTopology`]), the effects, the signals and the uncertain parameters.
+//! Leaves: a list of [`Hypothesis`], in the order of the library. Called by `study`.
+//!
+//! An effect is first put at every port or pair of ports that fits. Attachments at rigidly connected nodes and parallel
+//! bridges are the same and become one. Each of the rest is a hypothesis of its own. The effect at all instances of a
+//! class is one more hypothesis, with shared coefficients.
 
 use super::circuit::{CircuitTopology, NamedQuantity, PhysicalPort, same_kind};
 use super::effects::{AttachmentKind, EffectCoefficient, EffectModel, ShapeParameter};
@@ -7,32 +14,32 @@ use bramah_model::flat::ScalarType;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// Orders nearer than this are the same.
+/// Orders (periods a turn) that differ by less than this are the same.
 const SAME_ORDER: f64 = 0.5;
 
-/// A signal of the study: what a sensor recorded.
+/// A signal of the study: what one sensor recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorSignal {
     /// Its name in study and verdict.
     pub name: String,
-    /// The model's variable.
+    /// The variable of the model that it measures.
     pub variable: String,
-    /// Its full scale in SI units, for typical sizes of sensor effects.
+    /// Its full scale in SI units, which sets typical sizes of sensor effects.
     pub scale: f64,
 }
 
-/// A parameter that may be off.
+/// A parameter that may be out of its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UncertainParameter {
-    /// Full name.
+    /// Full name in the nominal model.
     pub name: String,
-    /// Value of the nominal model.
+    /// Value of the nominal model, SI.
     pub nominal: f64,
-    /// Tolerance, one standard deviation in the parameter's unit.
+    /// Tolerance as one standard deviation, SI.
     pub sigma: f64,
 }
 
-/// What is missing at a place.
+/// Kind of quantity that is missing at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the words of the verdict")]
 pub enum MissingQuantity {
@@ -48,7 +55,7 @@ pub enum MissingQuantity {
 }
 
 impl MissingQuantity {
-    /// The word of the verdict.
+    /// The word that the verdict uses.
     pub fn word(self) -> &'static str {
         match self {
             MissingQuantity::Force => "force",
@@ -63,7 +70,8 @@ impl MissingQuantity {
         }
     }
 
-    /// By the unit of a through variable.
+    /// The kind that belongs to the unit of a through variable; `Signal` for units of no known kind.
+    /// Scales do not matter: l/min is a flow like m3/s.
     fn of(unit: &str) -> MissingQuantity {
         let flows = [
             ("m3/s", MissingQuantity::Flow),
@@ -79,33 +87,33 @@ impl MissingQuantity {
 /// A place of the network as the verdict names it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NetworkLocation {
-    /// Its name.
+    /// Its name: a port, two ports `a|b`, a connection `a->b`, a signal or a parameter.
     pub place: String,
-    /// Everything that is the same place: ports of the node, parallel bridges.
+    /// All names of the same place: ports of the node, or parallel bridges.
     pub node: Vec<String>,
-    /// What is missing there.
+    /// Kind of quantity that is missing there.
     pub kind: MissingQuantity,
 }
 
-/// Where an effect is tied to the model; numbers are those of [`CircuitTopology::ports`].
+/// Where an effect is tied to the model. Numbers are indices of [`CircuitTopology::ports`].
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum AttachmentSite {
-    /// A node, by its first port.
+    /// A node, by one of its ports. The effect draws a flow from it.
     Node(usize),
-    /// From a port to another.
+    /// From the first port to the second. What the effect takes from the first it gives to the second.
     Across(usize, usize),
-    /// Into a connection: from a port to the rest of its node.
+    /// Into a connection: between the port and the rest of its node. The effect gives a difference of potential.
     Into(usize),
-    /// A signal of the study.
+    /// A signal of the study, by name. The effect lies between the variable and its recording.
     Sensor(String),
-    /// An input.
+    /// An input or a signal inside the model, by name. The effect lies between it and the model.
     Command(String),
-    /// A parameter.
+    /// A parameter, by full name, that leaves its tolerance.
     Parameter(String),
 }
 
 impl AttachmentSite {
-    /// Whether two effects act at one place; which way they point does not count.
+    /// Whether two effects act at the same place, whatever their direction.
     pub fn is_at(&self, other: &AttachmentSite) -> bool {
         match (self, other) {
             (AttachmentSite::Across(a, b), AttachmentSite::Across(c, d)) => (a, b) == (c, d) || (a, b) == (d, c),
@@ -113,7 +121,7 @@ impl AttachmentSite {
         }
     }
 
-    /// Ports of the nodes on which it acts and whose potential is not given.
+    /// Ports of the nodes on which it acts and whose potential is not given; empty for signals and parameters.
     pub fn free_ports(&self, circuit: &CircuitTopology) -> Vec<usize> {
         let ports = match self {
             AttachmentSite::Node(p) | AttachmentSite::Into(p) => vec![*p],
@@ -123,7 +131,8 @@ impl AttachmentSite {
         ports.into_iter().filter(|p| !circuit.nodes[circuit.ports[*p].node].fixed).collect()
     }
 
-    /// Whether two effects act on one node, or on two that are bound to each other.
+    /// Whether two effects act on one node, or on nodes whose potentials are bound to each other.
+    /// Nodes of given potential, such as a reservoir, do not count.
     pub fn meets(&self, other: &AttachmentSite, circuit: &CircuitTopology) -> bool {
         let nodes =
             |site: &AttachmentSite| site.free_ports(circuit).into_iter().map(|p| circuit.geared(p)).collect::<Vec<_>>();
@@ -137,80 +146,83 @@ impl AttachmentSite {
 pub struct EffectAttachment {
     /// The effect; `None` for a parameter.
     pub effect: Option<Arc<EffectModel>>,
-    /// Where.
+    /// Where it acts.
     pub site: AttachmentSite,
-    /// Ports whose potentials are read beside.
+    /// Ports whose potentials it reads in addition, in the order of the effect's `sense`.
     pub sense: Vec<usize>,
-    /// Parameters of the effect that take the value of a parameter of the model, by full name, or a number.
+    /// Parameters of the effect that take the value of a parameter of the model (full name) or a number.
     pub base: Vec<(String, String)>,
-    /// The input that is the temperature, with the offset that makes kelvins of it.
+    /// Input that is the temperature, and the offset that converts it to kelvin; `None` for effects that read none.
     pub temperature: Option<(String, f64)>,
     /// The place in words.
     pub place: NetworkLocation,
 }
 
-/// How far one set of coefficients reaches.
+/// Which places share one set of coefficients.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CoefficientSharing {
-    /// One place.
+    /// One place has its own.
     Single,
-    /// All instances of a class.
+    /// All instances of a class share them.
     Class(String),
-    /// All places where the effect fits.
+    /// All places where the effect fits share them.
     All,
 }
 
-/// One explanation that the network offers.
+/// One possible explanation of the gap: an effect at one or several places, or a parameter out of its tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hypothesis {
-    /// Class of the effect, of the first one in a group; `Drift` for a parameter.
+    /// Class of the effect (of the first one in a group); `Drift` for a parameter.
     pub effect: String,
-    /// Its family.
+    /// Family of the effect; `parameter` for a parameter.
     pub family: String,
-    /// Where it acts.
+    /// Places where it acts; at least one.
     pub attachments: Vec<EffectAttachment>,
-    /// One place or several with the same coefficients.
+    /// One place, or several with the same coefficients.
     pub sharing: CoefficientSharing,
-    /// Linear parameters, typical sizes in SI units.
+    /// Parameters in which it is linear, with typical sizes in SI units.
     pub coefficients: Vec<EffectCoefficient>,
-    /// Nonlinear parameters, grids in SI units.
+    /// Nonlinear parameters, with grids in SI units.
     pub shapes: Vec<ShapeParameter>,
-    /// The order of the model changes with it (it needs a rate that the model does not have, or stands inside a connection),
-    /// so that it cannot be linearised at its off value together with the others. States of its own beside are none.
+    /// It changes the order of the model, so that it cannot be linearised at its off value together with others.
+    /// It needs a rate that the model lacks, or stands inside a connection. States of its own beside the model do not
+    /// count.
     pub changes_order: bool,
-    /// Usual size of the signal that passes through it, SI; its own states are of that size. Nothing at a node.
+    /// Usual size of the signal that passes through it, SI, which is also the size of its states; `None` at a node.
     pub passes: Option<f64>,
 }
 
 impl Hypothesis {
-    /// The places in words.
+    /// Its places in words.
     pub fn places(&self) -> Vec<&NetworkLocation> {
         self.attachments.iter().map(|a| &a.place).collect()
     }
 
-    /// Whether it only says what shape a gap has that no effect explains.
+    /// Whether it is a shape without a physical name.
     pub fn is_shape(&self) -> bool {
         self.attachments[0].effect.as_ref().is_some_and(|e| e.is_shape())
     }
 
-    /// Whether it is a mistake of the recording, not of the model.
+    /// Whether it is an error of the recording, not of the model.
     pub fn is_recording_error(&self) -> bool {
         self.family == super::mistakes::FAMILY
     }
 
-    /// The law whose form it is: of the forms of one law, one is at a place.
+    /// Name of the law of which it is a form. Only one form of a law is accepted at a place.
     pub fn law(&self) -> &str {
         let effect = self.attachments[0].effect.as_ref();
         effect.and_then(|e| e.law.as_deref()).unwrap_or(&self.effect)
     }
 
-    /// Whether it is the same with these values as with others: an effect of an order may come again with another one.
+    /// Whether it is the same with two lists of values. An effect with an order may be accepted again with another
+    /// order.
     pub fn same(&self, values: &[f64], by: &[f64]) -> bool {
         let order = self.shapes.iter().position(|s| s.order).map(|k| self.coefficients.len() + k);
         order.is_none_or(|k| (values[k] - by[k]).abs() < SAME_ORDER)
     }
 
-    /// Combinations of the grids of all shapes, the first shape varying slowest; one empty one without shapes.
+    /// All combinations of the grid values of its shapes, the first shape varying slowest; one empty combination
+    /// without shapes.
     pub fn variants(&self) -> Vec<Vec<(String, f64)>> {
         let mut all = vec![Vec::new()];
         for shape in &self.shapes {
@@ -224,9 +236,9 @@ impl Hypothesis {
     }
 }
 
-/// Every effect at every place, each shared at all alike, and every free parameter.
+/// All hypotheses: every effect at every place, alone and with shared coefficients, and every uncertain parameter.
 ///
-/// The order is that of the effects, then of the places in declaration order, single places before shared ones.
+/// The order is that of the effects, then of the places in the order of declaration, single places before shared ones.
 pub fn hypotheses(
     circuit: &CircuitTopology,
     effects: &[Arc<EffectModel>],
@@ -237,22 +249,25 @@ pub fn hypotheses(
     let mut groups: BTreeMap<&str, Vec<EffectAttachment>> = BTreeMap::new();
     for effect in effects {
         let candidates = candidates(circuit, effect, effects, signals);
+        // parallel bridges and ports of one node are the same place
         let single = merged(circuit, &candidates);
         if let Some(group) = &effect.group {
             groups.entry(group).or_default().extend(single.iter().cloned());
         }
         all.extend(single.iter().map(|a| hypothesis(circuit, vec![a.clone()], CoefficientSharing::Single, signals)));
-        // one shape at several places is no shape
+        // a shape with shared coefficients would have no meaning: its form belongs to one place
         let shared = if effect.is_shape() { Vec::new() } else { shared(circuit, effect, &candidates, &single) };
         all.extend(shared.into_iter().map(|(a, s)| hypothesis(circuit, a, s, signals)));
     }
+    // a group needs at least two different effects
     let groups = groups.into_values().filter(|g| g.iter().any(|a| a.effect != g[0].effect));
     all.extend(groups.map(|g| hypothesis(circuit, g, CoefficientSharing::All, signals)));
     all.extend(free.iter().map(drift));
     all
 }
 
-/// Leaves only what the study allows. Effects are named by class or family, places as the verdict names them.
+/// Removes what the study does not allow. It names effects by class or family, and places as the verdict does.
+/// With a list of places, a hypothesis stays only if all its places are in the list.
 pub fn narrow(all: &mut Vec<Hypothesis>, choice: &EffectChoice) {
     let named = |list: &[String], h: &Hypothesis| list.iter().any(|n| *n == h.effect || *n == h.family);
     let allowed = |p: &NetworkLocation| choice.places.iter().any(|n| p.node.contains(n) || *n == p.place);
@@ -263,7 +278,8 @@ pub fn narrow(all: &mut Vec<Hypothesis>, choice: &EffectChoice) {
     });
 }
 
-/// Leaves out what only a command suffers at inputs that a sensor shows, and at what follows from them alone.
+/// Removes effects that only a command can have, at inputs that are measured and at signals that follow from these
+/// alone. A measured input has no dead zone, limit or lag of its own; effects marked `measured` stay.
 pub fn without_commands(all: &mut Vec<Hypothesis>, circuit: &CircuitTopology, measured: &[&str]) {
     let shown = |name: &String| {
         let is_measured = |n: &String| measured.contains(&n.as_str());
@@ -277,19 +293,24 @@ pub fn without_commands(all: &mut Vec<Hypothesis>, circuit: &CircuitTopology, me
     all.retain(|h| h.attachments.iter().all(fits));
 }
 
-/// An attachment before identical ones are merged, with its component and what is alike in other instances.
+/// An attachment before identical ones are merged.
 struct AttachmentCandidate {
+    /// Component at whose ports it was found; 0 (the model itself) for effects between any two places.
     component: usize,
+    /// Key of what is alike in other instances of the component's class.
     alike: String,
+    /// The attachment.
     attachment: EffectAttachment,
 }
 
+/// All attachments of one effect, in the order of declaration; several may be the same place.
 fn candidates(
     circuit: &CircuitTopology,
     effect: &Arc<EffectModel>,
     all: &[Arc<EffectModel>],
     signals: &[SensorSignal],
 ) -> Vec<AttachmentCandidate> {
+    // some effects only stand in where another form of their family fits nowhere
     if effect.without.is_some_and(|a| fits_somewhere(circuit, effect, a, all)) {
         return Vec::new();
     }
@@ -297,8 +318,9 @@ fn candidates(
         AttachmentKind::Sensor => {
             signals.iter().map(|s| signal(effect, AttachmentSite::Sensor(s.name.clone()), &s.name)).collect()
         }
+        // a link is a signal inside the model that acts like a command
         AttachmentKind::Command => {
-            // A recorded temperature is no command.
+            // a recorded temperature is a measurement, not a command
             let all = circuit.inputs.iter().chain(circuit.links.iter().map(|l| &l.signal));
             let real = all.filter(|i| i.ty == ScalarType::Real && !same_kind(&i.unit, "K"));
             real.map(|i| signal(effect, AttachmentSite::Command(i.name.clone()), &i.name)).collect()
@@ -315,7 +337,7 @@ fn candidates(
     }
 }
 
-/// Whether an effect of the family fits by another interface.
+/// Whether another effect of the family fits with this kind of attachment.
 fn fits_somewhere(
     circuit: &CircuitTopology,
     effect: &EffectModel,
@@ -326,6 +348,7 @@ fn fits_somewhere(
     others.into_iter().any(|e| (0..circuit.components.len()).any(|c| !at_component(circuit, e, c).is_empty()))
 }
 
+/// An attachment to a signal, a command or a sensor. It belongs to no component.
 fn signal(effect: &Arc<EffectModel>, site: AttachmentSite, name: &str) -> AttachmentCandidate {
     let kind =
         if matches!(site, AttachmentSite::Sensor(_)) { MissingQuantity::Sensor } else { MissingQuantity::Signal };
@@ -335,14 +358,14 @@ fn signal(effect: &Arc<EffectModel>, site: AttachmentSite, name: &str) -> Attach
     AttachmentCandidate { component: 0, alike: String::new(), attachment }
 }
 
-/// Sites of an effect at the ports of one component.
+/// Attachments of an effect at the ports of one component, by the kind of its interface.
 fn at_component(circuit: &CircuitTopology, effect: &Arc<EffectModel>, component: usize) -> Vec<AttachmentCandidate> {
     let fitting: Vec<usize> =
         circuit.components[component].ports.iter().copied().filter(|&p| fits(effect, &circuit.ports[p])).collect();
     let free = |p: &usize| !circuit.nodes[circuit.ports[*p].node].fixed;
     let driven = |p: &usize| circuit.nodes[circuit.ports[*p].node].driven;
     let sites: Vec<(AttachmentSite, Vec<usize>)> = match effect.interface.attach {
-        // where a motion is imposed, what acts changes the reaction
+        // at a node of given potential nothing changes, except the reaction where the motion is imposed by an input
         AttachmentKind::Shunt => fitting
             .iter()
             .copied()
@@ -350,11 +373,13 @@ fn at_component(circuit: &CircuitTopology, effect: &Arc<EffectModel>, component:
             .map(|p| (AttachmentSite::Node(p), vec![p]))
             .collect(),
         AttachmentKind::Bridge => pairs(circuit, effect, &fitting),
+        // one hypothesis for each node of given potential that the flow may go to
         AttachmentKind::Drain => {
             let low: Vec<usize> = reservoirs(circuit, effect);
             let one = |p: usize| low.iter().map(move |&l| (AttachmentSite::Across(p, l), vec![p])).collect::<Vec<_>>();
             fitting.iter().copied().filter(|p| free(p)).flat_map(one).collect()
         }
+        // only a connection that can be cut can take an element
         AttachmentKind::Series => fitting
             .iter()
             .copied()
@@ -366,19 +391,22 @@ fn at_component(circuit: &CircuitTopology, effect: &Arc<EffectModel>, component:
     sites.into_iter().flat_map(|(site, used)| at_site(circuit, effect, component, &site, &used)).collect()
 }
 
-/// Sites of a bridge that needs no component between its ends, as heat does not: any two places.
+/// Attachments of a bridge that needs no component between its ends (as for heat): any two places.
 fn without_component(circuit: &CircuitTopology, effect: &Arc<EffectModel>) -> Vec<AttachmentCandidate> {
     let interface = &effect.interface;
     if interface.attach != AttachmentKind::Bridge || !interface.anywhere || !interface.sense.is_empty() {
         return Vec::new();
     }
     let mut places = BTreeSet::new();
+    // one port for all rigidly connected nodes
     let first = |p: &usize| fits(effect, &circuit.ports[*p]) && places.insert(circuit.rigid(*p));
     let ports: Vec<usize> = (0..circuit.ports.len()).filter(first).collect();
     let all = pairs(circuit, effect, &ports).into_iter();
     all.flat_map(|(site, used)| at_site(circuit, effect, 0, &site, &used)).collect()
 }
 
+/// Whether a port has the units of the effect's through variable and potential. A Series element has a drop instead of
+/// a potential. Scales may differ, since `augment` converts units.
 fn fits(effect: &EffectModel, port: &PhysicalPort) -> bool {
     let i = &effect.interface;
     let through = i.through.as_ref().is_some_and(|t| same_kind(&t.unit, &port.through.unit));
@@ -386,21 +414,23 @@ fn fits(effect: &EffectModel, port: &PhysicalPort) -> bool {
     through && potential.is_some_and(|p| same_kind(&p.unit, &port.potential.unit))
 }
 
-/// Whether a port is tied to others by connections of the model's own top level, which can be cut.
+/// Whether all connections of a port stand at the top level of the model, where they can be cut.
+/// Ports of arrays are left out.
 fn joined(circuit: &CircuitTopology, port: usize) -> bool {
     let mut touching = circuit.connections.iter().filter(|(a, b, _)| *a == port || *b == port).peekable();
     let plain = !circuit.ports[port].name.contains('[');
     plain && touching.peek().is_some() && touching.all(|(.., within)| *within == 0)
 }
 
-/// Pairs of ports of a component at different nodes.
+/// Pairs of ports at different nodes, with their sites. Directed effects get both directions.
+/// A pair of two given potentials is left out; an effect with free ends also needs both nodes free.
 fn pairs(circuit: &CircuitTopology, effect: &EffectModel, ports: &[usize]) -> Vec<(AttachmentSite, Vec<usize>)> {
     let mut sites = Vec::new();
     for (i, &a) in ports.iter().enumerate() {
         for &b in &ports[i + 1..] {
             let (x, y) = (circuit.rigid(a), circuit.rigid(b));
             let fixed = [x, y].into_iter().filter(|n| circuit.nodes[*n].fixed).count();
-            // between the sides of a gear acts nothing that could not act at one of them
+            // between the sides of an ideal gear nothing can act that could not act at one of them
             let bound = circuit.geared(a) == circuit.geared(b);
             if !bound && fixed < if effect.free_ends { 1 } else { 2 } {
                 sites.push((AttachmentSite::Across(a, b), vec![a, b]));
@@ -413,13 +443,13 @@ fn pairs(circuit: &CircuitTopology, effect: &EffectModel, ports: &[usize]) -> Ve
     sites
 }
 
-/// First ports of the nodes of constant potential that fit.
+/// First ports of the nodes of given potential whose units fit.
 fn reservoirs(circuit: &CircuitTopology, effect: &EffectModel) -> Vec<usize> {
     let fixed = circuit.nodes.iter().filter(|n| n.fixed).map(|n| n.ports[0]);
     fixed.filter(|&p| fits(effect, &circuit.ports[p])).collect()
 }
 
-/// An effect at a site, once for each choice of what it reads beside.
+/// Attachments of an effect at a site, one for each choice of the further ports that it reads.
 fn at_site(
     circuit: &CircuitTopology,
     effect: &Arc<EffectModel>,
@@ -439,7 +469,8 @@ fn at_site(
     sensed(circuit, effect, component, used).into_iter().map(with).collect()
 }
 
-/// Further ports, one for each sensed potential: of the component, or any other for effects that reach so far.
+/// Choices of further ports, one port per sensed potential: of the same component, or of the network for effects that
+/// may read anywhere. Empty if a potential is not found.
 fn sensed(circuit: &CircuitTopology, effect: &EffectModel, component: usize, used: &[usize]) -> Vec<Vec<usize>> {
     if effect.interface.anywhere && !effect.interface.sense.is_empty() {
         return effect.interface.sense.first().map_or_else(Vec::new, |q| moving(circuit, q));
@@ -457,7 +488,7 @@ fn sensed(circuit: &CircuitTopology, effect: &EffectModel, component: usize, use
     vec![sense]
 }
 
-/// First ports of all places with such a potential that is not fixed.
+/// First ports of all places with a free potential of this unit, as one-element choices.
 fn moving(circuit: &CircuitTopology, q: &NamedQuantity) -> Vec<Vec<usize>> {
     let mut places = BTreeSet::new();
     let first = |p: &usize| {
@@ -468,7 +499,8 @@ fn moving(circuit: &CircuitTopology, q: &NamedQuantity) -> Vec<Vec<usize>> {
     (0..circuit.ports.len()).filter(first).map(|p| vec![p]).collect()
 }
 
-/// A candidate with each choice of base parameters and of a temperature; none where there is nothing to choose.
+/// A candidate with each choice of base parameters and of a temperature; empty if there is nothing to choose from.
+/// An effect without these needs no choice and stays as it is.
 fn completed(
     circuit: &CircuitTopology,
     effect: &EffectModel,
@@ -484,6 +516,8 @@ fn completed(
     all
 }
 
+/// A candidate with each parameter of its component that fits one base parameter.
+/// Only parameters that multiply a single variable fit, as the conductance of a throttle does.
 fn based(circuit: &CircuitTopology, wanted: &NamedQuantity, c: AttachmentCandidate) -> Vec<AttachmentCandidate> {
     let component = &circuit.components[c.component];
     let fitting = component.factors.iter().filter(|q| same_kind(&q.unit, &wanted.unit));
@@ -496,6 +530,8 @@ fn based(circuit: &CircuitTopology, wanted: &NamedQuantity, c: AttachmentCandida
     fitting.map(with).collect()
 }
 
+/// A candidate with each input that is a temperature, with the offset of its unit.
+/// An input in degrees Celsius is converted to kelvin by it.
 fn warmed(circuit: &CircuitTopology, c: AttachmentCandidate) -> Vec<AttachmentCandidate> {
     let temperatures = circuit.inputs.iter().filter(|i| i.ty == ScalarType::Real && same_kind(&i.unit, "K"));
     let with = |i: &super::circuit::ModelInput| {
@@ -507,7 +543,7 @@ fn warmed(circuit: &CircuitTopology, c: AttachmentCandidate) -> Vec<AttachmentCa
     temperatures.map(with).collect()
 }
 
-/// The place as the verdict names it.
+/// The place of a site as the verdict names it.
 fn place_of(circuit: &CircuitTopology, effect: &EffectModel, site: &AttachmentSite) -> NetworkLocation {
     let name = |p: usize| circuit.ports[p].name.clone();
     let node = |p: usize| {
@@ -523,6 +559,7 @@ fn place_of(circuit: &CircuitTopology, effect: &EffectModel, site: &AttachmentSi
         }
         AttachmentSite::Into(p) => {
             let ports = &circuit.nodes[circuit.ports[*p].node].ports;
+            // the connection is named by the first other port of the node
             let rest = ports.iter().copied().find(|i| i != p).unwrap_or(*p);
             let place = format!("{}->{}", name(rest), name(*p));
             (place.clone(), vec![place], *p)
@@ -534,11 +571,12 @@ fn place_of(circuit: &CircuitTopology, effect: &EffectModel, site: &AttachmentSi
     NetworkLocation { place, node: ports, kind: MissingQuantity::of(&circuit.ports[first].through.unit) }
 }
 
-/// What makes two attachments of one effect the same.
+/// Key by which two attachments of one effect are the same: site, sensed nodes, base parameters, temperature.
 type AttachmentIdentity = (AttachmentSite, Vec<usize>, Vec<(String, String)>, Option<String>);
 
+/// The key of an attachment. Ports count by their node, and undirected bridges by both nodes in order.
 fn identity(circuit: &CircuitTopology, a: &EffectAttachment) -> AttachmentIdentity {
-    // at an imposed motion, either side of a sensor is another place
+    // where the motion is imposed, a sensor tells the nodes on its two sides apart
     let node = |p: &usize| match circuit.ports[*p].node {
         own if circuit.nodes[own].driven => own,
         _ => circuit.rigid(*p),
@@ -547,6 +585,7 @@ fn identity(circuit: &CircuitTopology, a: &EffectAttachment) -> AttachmentIdenti
         AttachmentSite::Node(p) => AttachmentSite::Node(node(p)),
         AttachmentSite::Across(x, y) if directed(a) => AttachmentSite::Across(node(x), node(y)),
         AttachmentSite::Across(x, y) => AttachmentSite::Across(node(x).min(node(y)), node(x).max(node(y))),
+        // in a node of two ports, both ends of the connection are the same place
         AttachmentSite::Into(p) => {
             let ports = &circuit.nodes[circuit.ports[*p].node].ports;
             AttachmentSite::Into(if ports.len() == 2 { ports[0] } else { *p })
@@ -557,11 +596,13 @@ fn identity(circuit: &CircuitTopology, a: &EffectAttachment) -> AttachmentIdenti
     (site, sense, a.base.clone(), a.temperature.as_ref().map(|t| t.0.clone()))
 }
 
+/// Whether the direction of the effect matters.
 fn directed(a: &EffectAttachment) -> bool {
     a.effect.as_ref().is_some_and(|e| e.directed)
 }
 
-/// One attachment for all that are the same; parallel bridges are listed in its place.
+/// Attachments without repetitions, in the order of the first ones. The names of parallel bridges are added to the
+/// first.
 fn merged(circuit: &CircuitTopology, candidates: &[AttachmentCandidate]) -> Vec<EffectAttachment> {
     let mut number: BTreeMap<AttachmentIdentity, usize> = BTreeMap::new();
     let mut all: Vec<EffectAttachment> = Vec::new();
@@ -584,7 +625,8 @@ fn merged(circuit: &CircuitTopology, candidates: &[AttachmentCandidate]) -> Vec<
     all
 }
 
-/// The effect at all instances of a class, and at all places of a fluid.
+/// Groups of attachments with shared coefficients: all instances of a class, and all places of a fluid.
+/// Only groups of two or more places are listed, each once.
 fn shared(
     circuit: &CircuitTopology,
     effect: &EffectModel,
@@ -600,6 +642,7 @@ fn shared(
             classes.push(key);
         }
     }
+    // groups of one place, and groups that exist already, add nothing
     let mut add = |members: Vec<EffectAttachment>, sharing: CoefficientSharing| {
         let identities: BTreeSet<AttachmentIdentity> = members.iter().map(|a| identity(circuit, a)).collect();
         if identities.len() > 1 && seen.insert(identities) {
@@ -615,6 +658,7 @@ fn shared(
         let members = single.iter().filter(|a| ids.contains(&identity(circuit, a))).cloned().collect();
         add(members, CoefficientSharing::Class(class.to_string()));
     }
+    // effects on volume flow at nodes are also offered with one set of coefficients for the complete fluid
     let fluid = effect.interface.through.as_ref().is_some_and(|t| same_kind(&t.unit, "m3/s"));
     if fluid && matches!(effect.interface.attach, AttachmentKind::Shunt | AttachmentKind::Drain) {
         add(single.to_vec(), CoefficientSharing::All);
@@ -622,6 +666,8 @@ fn shared(
     groups
 }
 
+/// A hypothesis of an effect at these places, with sizes and grids in SI units.
+/// The range of a signal or input sets the sizes of relative coefficients.
 fn hypothesis(
     circuit: &CircuitTopology,
     attachments: Vec<EffectAttachment>,
@@ -636,6 +682,7 @@ fn hypothesis(
         }
         _ => None,
     };
+    // relative sizes count in full scales of the signal
     let scale = passes.unwrap_or(1.0);
     let mut coefficients = effect.coefficients.clone();
     coefficients.iter_mut().filter(|c| c.relative).for_each(|c| c.nominal *= scale);
@@ -648,6 +695,9 @@ fn hypothesis(
     Hypothesis { effect: class, family, attachments, sharing, coefficients, shapes, changes_order, passes }
 }
 
+/// Whether an attachment changes the order of the model.
+/// It does if it needs a rate or acceleration of a free potential that the model does not have. An element in a
+/// connection does if it has states, or if the potential there is differentiated or given.
 fn changes_order(circuit: &CircuitTopology, a: &EffectAttachment) -> bool {
     let Some(effect) = &a.effect else { return false };
     let mut ports = a.sense.clone();
@@ -660,6 +710,7 @@ fn changes_order(circuit: &CircuitTopology, a: &EffectAttachment) -> bool {
         }
         _ => {}
     }
+    // the rate of a potential that the model does not differentiate makes a new state
     let lacks = |p: &usize| {
         let node = &circuit.nodes[circuit.ports[*p].node];
         let rate = effect.needs_rate && !node.has_rate;
@@ -669,6 +720,8 @@ fn changes_order(circuit: &CircuitTopology, a: &EffectAttachment) -> bool {
     ports.iter().any(lacks)
 }
 
+/// The hypothesis that a parameter is out of its tolerance. Its off value is the data sheet, its typical size the
+/// tolerance.
 fn drift(free: &UncertainParameter) -> Hypothesis {
     let place =
         NetworkLocation { place: free.name.clone(), node: vec![free.name.clone()], kind: MissingQuantity::Parameter };

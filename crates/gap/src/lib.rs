@@ -1,13 +1,23 @@
-//! The gap between model and machine: where it lies, which effect causes it, how far it shrinks. [`fn@diagnose`] does it all.
+//! Diagnosis of the gap between a model and recordings of a real machine.
 //!
-//! Data goes one way. [`study`] reads the question into a [`problem`]: [`effects`] reads the effect models, [`circuit`] the
-//! places of the nominal model, [`hypotheses`] puts every effect at every place where it fits, [`shapes`] fits their grids
-//! to the recordings, `capacity` their bounds to the nodes, [`mistakes`] adds what may be wrong with the recordings, and
-//! [`augment`] writes the nominal model with effects attached. [`estimate`] fits such a model to the recordings, within the
-//! budget of a [`clock`]; [`select`] judges on left-out data which hypothesis is taken, with the constants of [`policy`].
-//! [`verdict`] says what came out, in [`figures`] and [`words`]; [`fixed`] writes the corrected model into one file,
-//! [`report`] the page, with the [`whiteness`] of what is left. [`plan`] says before measuring what an experiment would
-//! show.
+//! It says at which place the two differ, which effect of a library explains it, and how far the gap shrinks with it.
+//! The entry is [`fn@diagnose`]; the method is described in `docs/gap_method.md`.
+//!
+//! The stages, in the order of the data:
+//! - [`study`] reads a study file, its nominal model and its recordings into a [`problem`].
+//! - [`effects`] reads the library of effect models, [`circuit`] the nodes, ports and signals of the nominal model.
+//! - [`hypotheses`] puts every effect at every place where its units fit; [`mistakes`] adds wrong signs and units of
+//!   columns.
+//! - [`shapes`] fits the grids of nonlinear parameters to the recordings, with frequencies from [`lines`]; `capacity`
+//!   bounds shares of a node's capacity.
+//! - [`augment`] writes the nominal model with effects attached as Modelica text, which is compiled like any other
+//!   model.
+//! - [`estimate`] fits such a model to the recordings (MAP estimate), within the budget of a [`clock`].
+//! - [`select`] compares the fitted models on left-out data with the constants of [`policy`] and accepts effects.
+//! - [`verdict`] states the result with its [`figures`]; [`words`] and [`report`] show it, with the [`whiteness`] of
+//!   the residuals; [`fixed`] writes the corrected model.
+//!
+//! [`plan`] is separate: it predicts before measuring which effects a planned experiment would show.
 
 pub mod augment;
 mod capacity;

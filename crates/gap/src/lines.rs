@@ -1,26 +1,31 @@
-//! Spectral lines: frequencies at which the recordings part from the nominal model and at which no input moves. A periodic
-//! disturbance that follows no variable shows as one.
+//! Spectral lines: frequencies at which recordings differ from the nominal model and at which no input moves.
+//!
+//! A periodic disturbance that follows no variable of the model shows as such a line. Enters: the problem. Leaves:
+//! frequencies in Hz, which `shapes` takes as the grid of periodic effects.
 
 use super::problem::DiagnosisProblem;
 use std::f64::consts::PI;
 
-/// Samples of each recording that are looked at, at most.
+/// Most samples of each recording that are used.
 const SAMPLES: usize = 4096;
-/// Periods that a recording must hold, and samples that a period must.
+/// Least number of periods that a recording must hold.
 const PERIODS: f64 = 2.0;
+/// Least number of samples in a period.
 const PER_PERIOD: f64 = 5.0;
-/// Neighbours on each side with whose median the power at a frequency is compared, and those that its own window fills.
+/// Neighbouring frequencies on each side with whose median the power at a frequency is compared.
 const NEIGHBOURS: usize = 30;
+/// Neighbours on each side that belong to the line itself, because the window spreads it.
 const OWN: usize = 3;
-/// Mean logarithm over the recordings of power over its neighbours' median, from which a frequency is a line: among
-/// thousands of frequencies of one recording of noise the greatest is about 2.5.
+/// Mean logarithm of power over the neighbours' median from which on a frequency counts as a line. Among thousands of
+/// frequencies of one recording of noise the greatest is about 2.5.
 const LINE: f64 = 3.0;
-/// Lines at most.
+/// Most lines.
 const MOST: usize = 3;
-/// Halvings of the distance between two frequencies when a line is placed.
+/// Halvings of the distance between two frequencies when a line is located.
 const FINER: usize = 8;
 
-/// Frequencies in Hz, the clearest first; empty where the nominal model does not reach the end.
+/// Frequencies of the lines in Hz, the clearest first; empty if a simulation of the nominal model stops early.
+/// A frequency at which an input has a line is left out.
 pub fn lines(problem: &DiagnosisProblem<'_>) -> Vec<f64> {
     let Some(shown) = problem.observe(&problem.signals) else { return Vec::new() };
     let mut from = 0;
@@ -48,11 +53,14 @@ pub fn lines(problem: &DiagnosisProblem<'_>) -> Vec<f64> {
             .filter(|&(_, k)| free(k))
             .max_by(|a, b| spectra[a.0][a.1].total_cmp(&spectra[b.0][b.1]));
         let Some((i, k)) = best.filter(|&(i, k)| spectra[i][k] > LINE) else { break };
+        // also where an input moves: the next candidate must not be a neighbour of this one
         taken.push(k);
         let near = k.saturating_sub(OWN)..(k + OWN + 1).min(frequencies.len());
+        // what an input does is a matter of the model, not of a disturbance
         if inputs.iter().all(|own| own[near.clone()].iter().all(|h| *h < LINE)) {
             found.push(placed(&left[i], frequencies[k], frequencies[1] - frequencies[0]));
         }
+        // inputs with many lines would otherwise keep the loop running
         if taken.len() > 4 * MOST {
             break;
         }
@@ -60,14 +68,17 @@ pub fn lines(problem: &DiagnosisProblem<'_>) -> Vec<f64> {
     found
 }
 
-/// Differences of samples, which leave lines and take away what drifts, in a Hann window.
+/// Differences of neighbouring samples in a Hann window. Differences keep lines and remove drift.
 #[derive(Clone)]
 struct WindowedDifferences {
+    /// Windowed differences; 0 where a sample is missing.
     values: Vec<f64>,
+    /// Time between samples, s.
     step: f64,
 }
 
 impl WindowedDifferences {
+    /// From samples at a constant step.
     fn new(samples: Vec<f64>, step: f64) -> WindowedDifferences {
         let n = samples.len().saturating_sub(1).max(1) as f64;
         let window = |k: usize| 0.5 - 0.5 * (2.0 * PI * (k as f64 + 0.5) / n).cos();
@@ -78,17 +89,19 @@ impl WindowedDifferences {
         WindowedDifferences { values: samples.windows(2).enumerate().map(difference).collect(), step }
     }
 
+    /// Length of the series, s.
     fn duration(&self) -> f64 {
         self.values.len() as f64 * self.step
     }
 
+    /// Power at a frequency in Hz.
     fn power(&self, frequency: f64) -> f64 {
         goertzel(&self.values, 2.0 * PI * frequency * self.step)
     }
 }
 
-/// Power at a frequency, given as angle from sample to sample (Goertzel, An algorithm for the evaluation of finite
-/// trigonometric series, 1958).
+/// Power at a frequency, given as the angle from sample to sample in rad (Goertzel, An algorithm for the evaluation of
+/// finite trigonometric series, 1958).
 pub fn goertzel(values: &[f64], turn: f64) -> f64 {
     let twice = 2.0 * turn.cos();
     let (mut one, mut two) = (0.0, 0.0);
@@ -98,7 +111,8 @@ pub fn goertzel(values: &[f64], turn: f64) -> f64 {
     one * one + two * two - twice * one * two
 }
 
-/// Frequencies that all recordings can show, as dense as the longest tells them apart.
+/// Frequencies in Hz that all recordings can show, at the resolution of the longest one; `None` if there are too few.
+/// The lowest one has [`PERIODS`] periods in the shortest recording, the highest [`PER_PERIOD`] samples a period.
 fn frequencies(series: &[Vec<WindowedDifferences>]) -> Option<Vec<f64>> {
     let all = || series.iter().flatten();
     let longest = all().map(WindowedDifferences::duration).fold(0.0, f64::max);
@@ -110,7 +124,8 @@ fn frequencies(series: &[Vec<WindowedDifferences>]) -> Option<Vec<f64>> {
     enough.then(|| (0..count as usize).map(|k| least + k as f64 / longest).collect())
 }
 
-/// How far each frequency stands above its neighbours, as mean logarithm over the recordings.
+/// Height of each frequency: mean over the recordings of the logarithm of its power over the median of its neighbours.
+/// The median is that of the recording's own spectrum, so that coloured noise has no lines.
 fn heights(series: &[WindowedDifferences], frequencies: &[f64]) -> Vec<f64> {
     let mut sum = vec![0.0; frequencies.len()];
     for s in series {
@@ -120,16 +135,17 @@ fn heights(series: &[WindowedDifferences], frequencies: &[f64]) -> Vec<f64> {
             let mut others: Vec<f64> = near.filter(|n| n.abs_diff(k) > OWN).map(|n| powers[n]).collect();
             others.sort_by(f64::total_cmp);
             let median = others[others.len() / 2];
-            // where nothing moves there is no line either
+            // a median of zero means that nothing moves, so there is no line
             *sum += if median > 0.0 { (powers[k] / median).max(1e-3).ln() } else { 0.0 };
         }
     }
     sum.into_iter().map(|s| s / series.len().max(1) as f64).collect()
 }
 
-/// The frequency near one of the list at which the recordings together have most power.
+/// Frequency near one of the list at which the recordings together have most power, located by halving the distance.
 fn placed(series: &[WindowedDifferences], frequency: f64, distance: f64) -> f64 {
     let size: Vec<f64> = series.iter().map(|s| s.power(frequency).max(f64::MIN_POSITIVE)).collect();
+    // each recording counts relative to its own power, so that a loud one does not decide
     let power = |f: f64| series.iter().zip(&size).map(|(s, size)| s.power(f) / size).sum::<f64>();
     let (mut best, mut reach) = (frequency, distance);
     for _ in 0..FINER {

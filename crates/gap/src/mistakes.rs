@@ -1,5 +1,10 @@
-//! What a study gets wrong about a recording: the sign of a column, or its unit. Such a mistake has nothing to fit, so it
-//! is the simplest of all hypotheses.
+//! Hypotheses about errors of the recordings: a wrong sign or a wrong unit of a column.
+//!
+//! Such an error has nothing to fit, so it is the simplest of all hypotheses. Enters: the problem and the library.
+//! Leaves: hypotheses that scale a signal or an input by a fixed factor. Called by `study`.
+//!
+//! The factors are those between units that exist for the quantity of the column, and powers of ten for a shifted
+//! point. They are tried in the first step of a search only, before any effect is accepted.
 
 use super::circuit::same_kind;
 use super::effects::{EffectCoefficient, EffectModel};
@@ -9,14 +14,15 @@ use super::hypotheses::{
 use super::problem::DiagnosisProblem;
 use std::sync::Arc;
 
-/// Family of such hypotheses.
+/// Family of these hypotheses.
 pub const FAMILY: &str = "recording_error";
 
-/// Effects that scale a signal by 1 + k.
+/// Class of the effect that scales a signal by 1 + k.
 const SENSOR: &str = "Effects.SensorGain";
+/// Class of the effect that scales an input by 1 + k.
 const COMMAND: &str = "Effects.CommandGain";
 
-/// Units that are taken for each other: the SI unit, and how many of it are one of another.
+/// Units that are confused: an SI unit, and the size of each other unit in it.
 const UNITS: &[(&str, &[f64])] = &[
     ("rad", &[std::f64::consts::PI / 180.0, std::f64::consts::TAU]),
     ("rad/s", &[std::f64::consts::PI / 30.0, std::f64::consts::PI / 180.0, std::f64::consts::TAU]),
@@ -29,17 +35,18 @@ const UNITS: &[(&str, &[f64])] = &[
     ("A", &[1e-3]),
     ("V", &[1e-3]),
     ("W", &[1e3]),
-    // a part, written in per cent
+    // a ratio written in per cent
     ("1", &[1e-2]),
 ];
-/// Factors of a column of any unit: a shifted point.
+/// Factors of a column of any unit: a shifted decimal point.
 const ANY: &[f64] = &[10.0, 1e3];
-/// Temperatures below are differences, K.
+/// Temperatures below this are differences, K.
 const COLD: f64 = 150.0;
-/// Factors nearer than this part are one.
+/// Relative difference up to which factors are the same.
 const SAME: f64 = 1e-3;
 
-/// A wrong sign, and every wrong unit, of each signal and each input.
+/// A wrong sign and every wrong unit of each signal and input. Empty if the library lacks the two gain effects.
+/// For a temperature difference only the sign can be wrong.
 pub fn mistakes(problem: &DiagnosisProblem<'_>, catalogue: &[Arc<EffectModel>]) -> Vec<Hypothesis> {
     let effect = |class: &str| catalogue.iter().find(|e| e.class == class).cloned();
     let (Some(sensor), Some(command)) = (effect(SENSOR), effect(COMMAND)) else { return Vec::new() };
@@ -58,31 +65,33 @@ pub fn mistakes(problem: &DiagnosisProblem<'_>, catalogue: &[Arc<EffectModel>]) 
     signals.chain(inputs).collect()
 }
 
-/// The factor by which the column of a mistake is wrong.
+/// Recorded over correct value of a hypothesis.
 pub fn factor(h: &Hypothesis) -> f64 {
     1.0 + h.coefficients.first().and_then(|c| c.max).unwrap_or(0.0)
 }
 
-/// Whether a signal is the rise of a temperature: no machine is as cold as that.
+/// Whether a signal is a temperature difference: no machine has such low absolute temperatures.
 fn is_rise(problem: &DiagnosisProblem<'_>, signal: usize, unit: &str) -> bool {
     let values = || problem.train.iter().flat_map(|r| r.signals[signal].iter()).filter(|v| v.is_finite());
     same_kind("K", unit) && values().all(|v| v.abs() < COLD)
 }
 
-/// Factors of a column of a quantity; `declared`: how many of its SI unit are one of the unit that the study says, where that
-/// is known.
+/// Factors by which a column of a quantity may be wrong, the sign first, without repetitions.
+/// `declared`: size of the study's unit in SI units; `None` if unknown. Empty for temperatures.
 fn factors(unit: &str, declared: Option<f64>) -> Vec<f64> {
-    // a temperature has no sign, and scales of it differ by their zero
+    // an absolute temperature cannot have a wrong sign, and its units differ by an offset, not only by a factor
     if same_kind("K", unit) {
         return Vec::new();
     }
     let own = || UNITS.iter().filter(|(u, _)| same_kind(u, unit)).flat_map(|(_, f)| f.iter().copied());
     let others: Vec<f64> = match declared {
         Some(declared) => own().chain([1.0]).map(|meant| declared / meant).collect(),
+        // with an unknown unit both directions of a confusion are possible
         None => own().flat_map(|f| [f, 1.0 / f]).collect(),
     };
     let mut all = vec![-1.0];
     for f in others.into_iter().chain(ANY.iter().flat_map(|f| [*f, 1.0 / f])) {
+        // two confusions of units may have the same factor
         let known = |k: &f64| (k / f - 1.0).abs() < SAME;
         if f.is_normal() && !known(&1.0) && !all.iter().any(known) {
             all.push(f);
@@ -91,6 +100,7 @@ fn factors(unit: &str, declared: Option<f64>) -> Vec<f64> {
     all
 }
 
+/// The hypothesis that a column is wrong by a factor: a gain 1 + k with k fixed at factor - 1.
 fn hypothesis(
     effect: &Arc<EffectModel>,
     site: AttachmentSite,
@@ -102,6 +112,7 @@ fn hypothesis(
     let attachment =
         EffectAttachment { effect: Some(effect.clone()), site, sense: vec![], base: vec![], temperature: None, place };
     let k = factor - 1.0;
+    // equal bounds make the coefficient a share of a whole, which is not free
     let usual = |c: &EffectCoefficient| EffectCoefficient { min: Some(k), max: Some(k), nominal: k, ..c.clone() };
     Hypothesis {
         effect: effect.class.clone(),

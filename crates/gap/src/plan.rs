@@ -1,7 +1,9 @@
-//! Before measuring: which effects a planned experiment would show at their usual size, which it could not tell apart, and
-//! which further sensor or other excitation would. The nominal model is driven by the planned inputs, and the slopes of its
-//! signals with all hypotheses are weighed by the sensors' noise and accuracy; how much of one effect's trajectory another one's
-//! could take over follows from their products.
+//! Predictions before measuring: what a planned experiment would show.
+//!
+//! It answers which effects would be seen at their usual size, which could not be told apart, and which further sensor
+//! or other excitation would help. Enters: a problem whose train recordings are simulated with the planned inputs.
+//! Leaves: an [`ExperimentPlan`]. The sensitivities of the signals to all hypotheses are weighted by the sensors' noise
+//! and accuracy. From their products follows how much of one effect's trajectory another effect could take over.
 
 use super::data::RecordingData;
 use super::estimate::candidate::SensitivityProducts as Sums;
@@ -16,15 +18,15 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Usual sizes that an effect may have in the place of another.
+/// Usual sizes that an effect may have when it stands in for another one.
 const LARGEST: f64 = 30.0;
-/// Samples at which a model shows whether it has values.
+/// Samples over which a joined model is tested for values.
 const FEWEST: usize = 8;
-/// Samples looked at in all; more are counted, not run.
+/// Most samples that are simulated; the result is scaled up to all of them.
 const SAMPLES: usize = 4000;
-/// Further sensors that are weighed, at most.
+/// Most further sensors that are tried.
 const SENSORS: usize = 8;
-/// A parameter that is out of tolerance is so many tolerances off.
+/// Deviation of a parameter out of tolerance, in tolerances.
 const OUT: f64 = 3.0;
 /// Noise of a further sensor as part of its range.
 const NOISE: f64 = 3e-3;
@@ -34,37 +36,37 @@ const LEVELS: usize = 8;
 /// What a planned experiment would show.
 #[derive(Clone, Debug, Serialize)]
 pub struct ExperimentPlan {
-    /// Version of this form.
+    /// Version of this layout.
     pub schema: u32,
-    /// Every effect at every place with what it would gain at its usual size.
+    /// Every hypothesis with what it would gain at its usual size.
     pub hypotheses: Vec<EffectDetectability>,
-    /// Pairs that could not be told apart: the first one is there, and the second explains it nearly as well.
+    /// Pairs that could not be told apart, the closest first.
     pub confused: Vec<EffectPair>,
-    /// Other excitations of the same inputs over the same range and time.
+    /// Other excitations of the same inputs over the same range and time, the most useful first.
     pub excitations: Vec<ExperimentChange>,
-    /// Further sensors, one at a time.
+    /// Further sensors, one at a time, the most useful first.
     pub sensors: Vec<ExperimentChange>,
 }
 
-/// An effect at its usual size.
+/// A hypothesis and what it would gain.
 #[derive(Clone, Debug, Serialize)]
 pub struct EffectDetectability {
-    /// Its class.
+    /// Class of the effect.
     pub effect: String,
-    /// Its family.
+    /// Family of the effect.
     pub family: String,
-    /// Where.
+    /// Its places.
     pub places: Vec<String>,
-    /// What it would gain, nats.
+    /// Evidence at its usual size, nats.
     pub nats: f64,
 }
 
-/// Two effects, as numbers into [`ExperimentPlan::hypotheses`].
+/// Two effects that could be confused, as indices into [`ExperimentPlan::hypotheses`].
 #[derive(Clone, Debug, Serialize)]
 pub struct EffectPair {
-    /// The one that is there.
+    /// The one that is missing in the model.
     pub there: usize,
-    /// The one that stands in for it.
+    /// The one that explains nearly as much.
     pub instead: usize,
     /// How far the second is behind, nats.
     pub behind: f64,
@@ -73,16 +75,16 @@ pub struct EffectPair {
 /// What another excitation or a further sensor would change.
 #[derive(Clone, Debug, Serialize)]
 pub struct ExperimentChange {
-    /// The excitation, or the variable that the sensor shows.
+    /// Name of the excitation, or the variable that the sensor measures.
     pub what: String,
-    /// Effects that would be seen.
+    /// Number of effects that would be seen.
     pub seen: usize,
-    /// Of the confused pairs, how many it tells apart.
+    /// Number of the confused pairs that could be told apart.
     pub separates: usize,
 }
 
-/// Weighs the plan, which stands in the problem as simulated train recordings. `None` where the nominal model does not
-/// reach their end.
+/// Evaluates a plan. `progress` is called with the name of each part. `None` if a simulation of the nominal model stops
+/// early. The problem has its planned recordings again at the end.
 pub fn plan(problem: &mut DiagnosisProblem<'_>, progress: &mut dyn FnMut(&str)) -> Option<ExperimentPlan> {
     progress("the plan");
     let planned = WhitenedProducts::new(problem)?;
@@ -104,6 +106,7 @@ pub fn plan(problem: &mut DiagnosisProblem<'_>, progress: &mut dyn FnMut(&str)) 
             excitations.push(change(name.to_string(), &products));
         }
     }
+    // the sensors are tried with the planned inputs again
     problem.train = measured;
     let mut sensors = Vec::new();
     for signal in further(problem) {
@@ -118,16 +121,19 @@ pub fn plan(problem: &mut DiagnosisProblem<'_>, progress: &mut dyn FnMut(&str)) 
     Some(ExperimentPlan { schema: 1, hypotheses, confused, excitations, sensors })
 }
 
-/// Products of the whitened columns of all hypotheses, what tolerances can take over taken out.
+/// Products of the whitened sensitivities of all hypotheses, without what tolerance parameters can take over.
 struct WhitenedProducts {
+    /// Products, columns by columns, in squared deviations.
     gram: DMatrix<f64>,
-    /// Per hypothesis its variants: columns, and the size of each coefficient.
+    /// Per hypothesis its variants: range of columns, and the usual size of each coefficient in units of its
+    /// coordinate.
     variants: Vec<Vec<(Range<usize>, Vec<f64>)>>,
 }
 
 impl WhitenedProducts {
+    /// Products for the train recordings of a problem. `None` if the model cannot be simulated.
     fn new(problem: &DiagnosisProblem<'_>) -> Option<Self> {
-        // what is there as a whole or not at all would change the model for all others
+        // a share of a whole changes the model for all others when it is attached
         let vanishes = |h: &Hypothesis| h.coefficients.iter().all(|c| c.whole().is_none());
         let attachable = |h: &Hypothesis| h.family != "parameter" && !h.changes_order && !h.is_shape() && vanishes(h);
         let chosen: Vec<HypothesisValues> = (0..problem.hypotheses.len())
@@ -147,6 +153,7 @@ impl WhitenedProducts {
             variants[c.hypothesis].push((first..first + count, vec![1.0; count]));
             first += count;
         }
+        // a parameter uses the column of its tolerance
         for (i, h) in problem.hypotheses.iter().enumerate().filter(|(_, h)| h.family == "parameter") {
             let name = &h.attachments[0].place.place;
             let place = problem.tolerances.iter().position(|t| t.name == *name);
@@ -156,6 +163,7 @@ impl WhitenedProducts {
         Some(WhitenedProducts { gram, variants })
     }
 
+    /// The entry of a hypothesis in the plan.
     fn seen(&self, h: &Hypothesis, index: usize) -> EffectDetectability {
         let places = h.places().iter().map(|p: &&NetworkLocation| p.place.clone()).collect();
         EffectDetectability { effect: h.effect.clone(), family: h.family.clone(), places, nats: self.nats(index) }
@@ -166,13 +174,15 @@ impl WhitenedProducts {
         self.variants[h].iter().map(|v| 0.5 * self.square(v)).fold(0.0, f64::max)
     }
 
+    /// Squared norm of a variant at its usual size.
     fn square(&self, (columns, sizes): &(Range<usize>, Vec<f64>)) -> f64 {
         let own = self.gram.view((columns.start, columns.start), (sizes.len(), sizes.len()));
         let d = DVector::from_column_slice(sizes);
         d.dot(&(own * &d)).max(0.0)
     }
 
-    /// Nats by which the best variant of one effect is behind another that is there at its usual size.
+    /// Nats by which the best variant of `instead` is behind `there`, which is present at its usual size.
+    /// Infinite if one of them has no variant. A substitute may have up to [`LARGEST`] usual sizes, as a prior.
     fn behind(&self, there: usize, instead: usize) -> f64 {
         let Some(v) = self.variants[there].iter().max_by(|a, b| self.square(a).total_cmp(&self.square(b))) else {
             return f64::INFINITY;
@@ -183,6 +193,7 @@ impl WhitenedProducts {
             let k = most.len();
             let cross = self.gram.view((others.start, columns.start), (k, sizes.len())) * &d;
             let mut own = self.gram.view((others.start, others.start), (k, k)).clone_owned();
+            // a prior of its usual sizes keeps the substitute within reason
             (0..k).for_each(|i| own[(i, i)] += (LARGEST * most[i]).powi(-2));
             own.cholesky().map_or(0.0, |f| cross.dot(&f.solve(&cross)))
         };
@@ -190,7 +201,7 @@ impl WhitenedProducts {
         if best > 0.0 { 0.5 * (all - best).max(0.0) } else { f64::INFINITY }
     }
 
-    /// All pairs of effects of which the first would be seen and the second explains it nearly as well.
+    /// All pairs of which the first would be seen and the second explains it nearly as well.
     fn confused(&self) -> Vec<EffectPair> {
         let count = self.variants.len();
         let mut found = Vec::new();
@@ -207,14 +218,16 @@ impl WhitenedProducts {
     }
 }
 
-/// A model with all hypotheses that can be attached together: where all cannot, halves of halves are tried.
+/// A model with all hypotheses that can be attached together. If all cannot, halves of the list are tried.
+/// `None` if even the rest cannot be simulated.
 fn joined(problem: &DiagnosisProblem<'_>, chosen: Vec<HypothesisValues>) -> Option<CandidateModel> {
     let model = |chosen: &[HypothesisValues]| {
         let model = attached(problem, chosen, None, 0, 0).ok()?;
-        // what is compiled may have no values where it begins
+        // a model that compiles may still not be evaluable, so its first samples are simulated
         let first = beginning(problem.train.first()?, FEWEST);
         model.errors(&model.present(), &first, Some(0)).map(|_| model)
     };
+    /// The largest sublist found by halving whose parts each join.
     fn fitting(
         joins: &dyn Fn(&[HypothesisValues]) -> bool,
         mut chosen: Vec<HypothesisValues>,
@@ -233,11 +246,13 @@ fn joined(problem: &DiagnosisProblem<'_>, chosen: Vec<HypothesisValues>) -> Opti
     model(&fitting(&|chosen| model(chosen).is_some(), chosen))
 }
 
-/// Products of the slopes of all coordinates over the train recordings.
+/// Products of the weighted sensitivities of all coordinates over the train recordings; `None` if a simulation stops
+/// early. Tolerance parameters come first, then the columns of the hypotheses.
 fn gram(problem: &DiagnosisProblem<'_>, model: CandidateModel) -> Option<DMatrix<f64>> {
     let all: usize = problem.train.iter().map(RecordingData::len).sum();
     let each = (SAMPLES / problem.train.len().max(1)).max(FEWEST);
     let used: Vec<RecordingData> = problem.train.iter().map(|r| beginning(r, each)).collect();
+    // accuracy counts like noise: an error that repeats is no less an error
     let square = |(n, f): (&f64, &f64)| n * n + (ACCURACY * f).powi(2);
     let square = problem.noise_floor.iter().zip(&problem.full_scale).map(square).collect();
     let weights = SignalWeights { square, tau: vec![1.0; problem.signals.len()] };
@@ -245,6 +260,7 @@ fn gram(problem: &DiagnosisProblem<'_>, model: CandidateModel) -> Option<DMatrix
     let evaluated = model.evaluate(&x, &used)?;
     let Sums { slopes, .. } = ModelFit { candidate: model, x, evaluated, weights }.sums(|_, _| true);
     let seen: usize = used.iter().map(RecordingData::len).sum();
+    // samples that were not simulated are assumed to say as much as the others
     Some(slopes * (all as f64 / seen.max(1) as f64))
 }
 
@@ -259,12 +275,13 @@ fn beginning(r: &RecordingData, samples: usize) -> RecordingData {
     }
 }
 
-/// Nats from which one effect is told from another.
+/// Nats from which on one effect is told from another.
 fn certain() -> f64 {
     (1.0 / ALPHA).ln()
 }
 
-/// Takes out of all columns what the tolerances, each within its own, explain: G - C (T + 1)^-1 C', in units of them.
+/// The products without what the tolerance parameters explain, each within its tolerance: G - C' (T + 1)^-1 C in units
+/// of the tolerances. `None` if the system is singular.
 fn without_tolerances(gram: &DMatrix<f64>, count: usize) -> Option<DMatrix<f64>> {
     let mut own = gram.view((0, 0), (count, count)).clone_owned();
     (0..count).for_each(|i| own[(i, i)] += 1.0);
@@ -276,6 +293,7 @@ fn without_tolerances(gram: &DMatrix<f64>, count: usize) -> Option<DMatrix<f64>>
 /// A trajectory over the time from 0 to 1, with values from 0 to 1.
 type ExcitationProfile = fn(f64) -> f64;
 
+/// Excitations that are tried, with their names.
 const EXCITATIONS: [(&str, ExcitationProfile); 5] =
     [("steps", steps), ("slow triangle", triangle), ("chirp", chirp), ("staircase", staircase), ("hold", |_| 0.75)];
 
@@ -285,21 +303,24 @@ fn steps(t: f64) -> f64 {
     order[((t * 2.0 * LEVELS as f64) as usize) % LEVELS]
 }
 
+/// A slow triangle: up in the first half, down in the second.
 fn triangle(t: f64) -> f64 {
     1.0 - (2.0 * t - 1.0).abs()
 }
 
-/// From two periods in the whole time up to eighty times as fast.
+/// A sine from two periods in the complete time up to eighty times that frequency.
 fn chirp(t: f64) -> f64 {
     let ratio: f64 = 80.0;
     0.5 + 0.5 * (std::f64::consts::TAU * 2.0 * (ratio.powf(t) - 1.0) / ratio.ln()).sin()
 }
 
+/// A triangle in steps.
 fn staircase(t: f64) -> f64 {
     (triangle(t) * LEVELS as f64).floor() / LEVELS as f64
 }
 
-/// Drives the inputs that the plan moves with another trajectory over the same range, alone.
+/// Replaces the recordings by one in which the planned inputs that move follow another trajectory over the same range.
+/// `None` if the simulation stops early.
 fn excite(problem: &mut DiagnosisProblem<'_>, planned: &RecordingData, trajectory: ExcitationProfile) -> Option<()> {
     let (t0, count) = (planned.times[0], planned.len());
     let span = planned.times[count - 1] - t0;
@@ -321,7 +342,7 @@ fn ends(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
 }
 
-/// Potentials that nothing measures yet, one a node.
+/// Potentials that nothing measures yet, one per node, with their range as scale. At most [`SENSORS`].
 fn further(problem: &DiagnosisProblem<'_>) -> Vec<SensorSignal> {
     let measured: BTreeSet<&str> = problem.signals.iter().map(|s| s.variable.as_str()).collect();
     let mut found = Vec::new();
@@ -342,6 +363,7 @@ fn further(problem: &DiagnosisProblem<'_>) -> Vec<SensorSignal> {
     let mut trajectories: Vec<Vec<f64>> = problem.observe(&problem.signals).unwrap_or_default();
     for (signal, trajectory) in found.into_iter().zip(values) {
         let (low, high) = ends(&trajectory);
+        // a potential that moves like a known one would add nothing
         let alike = |other: &Vec<f64>| other.iter().zip(&trajectory).all(|(a, b)| (a - b).abs() <= 1e-6 * (high - low));
         if high > low && !trajectories.iter().any(alike) {
             moving.push(SensorSignal { scale: high - low, ..signal });
@@ -352,11 +374,13 @@ fn further(problem: &DiagnosisProblem<'_>) -> Vec<SensorSignal> {
     moving
 }
 
+/// Products with a further sensor; the problem is left as it was. `None` if a simulation stops early.
 fn with_sensor(problem: &mut DiagnosisProblem<'_>, signal: &SensorSignal) -> Option<WhitenedProducts> {
     problem.signals.push(signal.clone());
     problem.noise_floor.push(NOISE * signal.scale);
     problem.full_scale.push(signal.scale);
     let products = problem.show().and_then(|()| WhitenedProducts::new(problem));
+    // removed whether or not the products could be computed
     problem.signals.pop();
     problem.noise_floor.pop();
     problem.full_scale.pop();
@@ -365,7 +389,7 @@ fn with_sensor(problem: &mut DiagnosisProblem<'_>, signal: &SensorSignal) -> Opt
 }
 
 impl ExperimentPlan {
-    /// The plan in words, for people.
+    /// The plan as text for people.
     pub fn words(&self) -> String {
         let seen = self.hypotheses.iter().filter(|h| h.nats > SEEN).count();
         let name = |i: usize| {
@@ -401,5 +425,5 @@ impl ExperimentPlan {
     }
 }
 
-/// Pairs that are shown in words.
+/// Most pairs that the text lists.
 const SHOWN: usize = 12;

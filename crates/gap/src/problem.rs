@@ -1,5 +1,11 @@
-//! What is diagnosed: the nominal model with its places, hypotheses, tolerances and recordings; and the models made of
-//! it by attaching hypotheses and sources.
+//! What is diagnosed, and the models that are made of it.
+//!
+//! [`DiagnosisProblem`] holds the nominal model with its places, the hypotheses, tolerances, sensors and train
+//! recordings. `study` fills it. [`DiagnosisProblem::assemble`] attaches hypotheses: it writes the augmented Modelica
+//! text, compiles it, and lifts tolerances, coefficients and shapes to parameters with derivatives. `select::models`
+//! calls it for every model.
+//!
+//! Signals, full scales, noise and display units have one order, that of the study. Values are in SI units.
 
 use super::augment::{self, AugmentedModel, HypothesisInstance, PLANT};
 use super::circuit::CircuitTopology;
@@ -20,25 +26,26 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A state that moves over so many of its nominal sizes has one that nobody chose.
+/// Travel in nominal sizes from which on a state's `nominal` is taken for a default, and the travel is its size
+/// instead.
 const DEFAULT: f64 = 10.0;
-/// The unit in which a signal is spoken of: that of the study's column.
+/// The unit in which a signal is shown: that of its column in the study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalDisplayUnit {
-    /// The unit; empty where there is none.
+    /// The unit; empty if there is none.
     pub unit: String,
-    /// Differences in SI units times this are differences in the unit.
+    /// Factor from a difference in SI units to one in the unit.
     pub factor: f64,
 }
 
 impl SignalDisplayUnit {
-    /// A difference in the unit.
+    /// Converts a difference from SI units.
     pub fn value(&self, si: f64) -> f64 {
         si * self.factor
     }
 }
 
-/// A parameter that may be off within its tolerance.
+/// A parameter that may deviate from its data sheet within a tolerance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToleranceParameter {
     /// Full name in the nominal model.
@@ -47,77 +54,79 @@ pub struct ToleranceParameter {
     pub unit: String,
     /// Value of the nominal model, SI.
     pub nominal: f64,
-    /// One standard deviation, SI.
+    /// Tolerance as one standard deviation, SI.
     pub sigma: f64,
-    /// Least value.
+    /// Lower bound, SI.
     pub min: f64,
-    /// Greatest value.
+    /// Upper bound, SI.
     pub max: f64,
-    /// The study does not say it: assumed.
+    /// The tolerance is assumed, because the study states none.
     pub assumed: bool,
-    /// The study leaves it free: the nominal value says nothing, `sigma` is a size.
+    /// The study leaves the parameter free: it has no prior, and `sigma` is only its scale.
     pub free: bool,
 }
 
-/// The whole question.
+/// The complete question of a diagnosis.
 pub struct DiagnosisProblem<'a> {
-    /// Where classes come from.
+    /// Source of all files.
     pub world: &'a dyn World,
-    /// The nominal model.
+    /// Request that compiles the nominal model.
     pub request: Request,
-    /// The folder with effects of the user's own.
+    /// Folder with the user's own effects; `None` without any.
     pub folder: Option<PathBuf>,
     /// Places of the nominal model.
     pub circuit: CircuitTopology,
-    /// All explanations.
+    /// All hypotheses, errors of recordings and shapes included. Their indices are used everywhere.
     pub hypotheses: Vec<Hypothesis>,
-    /// One source per node, command and sensor.
+    /// One disturbance source per node, command and sensor.
     pub disturbances: Vec<Hypothesis>,
-    /// Measured signals.
+    /// Measured signals, in the order of the recordings' signals.
     pub signals: Vec<SensorSignal>,
-    /// Full scales of the signals, SI.
+    /// Full scale of each signal, SI.
     pub full_scale: Vec<f64>,
-    /// In which units the signals are spoken of.
+    /// Unit in which each signal is shown.
     pub shown: Vec<SignalDisplayUnit>,
-    /// Noise that the samples show, SI: an upper bound where signals move fast.
+    /// Standard deviation of each signal's noise as estimated from the samples, SI: an upper bound where signals move
+    /// fast.
     pub noise_floor: Vec<f64>,
     /// Parameters with their tolerances.
     pub tolerances: Vec<ToleranceParameter>,
-    /// Names of the train recordings, for messages alone.
+    /// Files of the train recordings, for messages.
     pub files: Vec<String>,
-    /// Recordings to learn from.
+    /// Train recordings.
     pub train: Vec<RecordingData>,
-    /// How far states of the nominal model move over the recordings, by their names, SI; see [`DiagnosisProblem::explore`].
+    /// How far the states of the nominal model move over the recordings, by name, SI; see
+    /// [`DiagnosisProblem::explore`].
     pub travel: BTreeMap<String, f64>,
 }
 
-/// A model with hypotheses attached, ready to be evaluated.
+/// A compiled model with hypotheses attached.
 #[derive(Clone, Debug)]
 pub struct AssembledModel {
-    /// Derivatives and all.
+    /// The model with its derivatives, ready to be evaluated.
     pub plan: Arc<EvaluationPlan>,
-    /// Value of each parameter of the plan.
+    /// Value of each parameter of the plan, SI.
     pub theta: Vec<f64>,
-    /// Parameters of the plan that are tolerances, in their order: always the first ones.
+    /// Range of the tolerance parameters in the plan, in the order of the problem; always the first ones.
     pub free: Range<usize>,
-    /// Parameters of the plan that are sources, in the order of the disturbances asked for.
+    /// Range of the disturbance sources in the plan, in the order in which they were asked for.
     pub sources: Range<usize>,
-    /// Per attached hypothesis its coefficients and shapes.
+    /// Per attached hypothesis the indices of its coefficients, then of its shapes, among the parameters of the plan.
     pub attached: Vec<Vec<usize>>,
-    /// Parameters that act in one recording only, and its number.
+    /// Parameters that act in one recording only: index in the plan, index of the recording.
     pub own: Vec<(usize, usize)>,
-    /// Usual size of each state.
+    /// Usual size of each state, SI.
     pub sizes: Vec<f64>,
-    /// What a step of a simulation may be corrected by, in parts of these sizes.
+    /// Accepted correction of a simulation step, in parts of these sizes.
     pub correction: f64,
-    /// How far each state moves in the nominal model, SI; 0 where that is not known.
+    /// How far each state moves in the nominal model, SI; 0 where unknown.
     pub travel: Vec<f64>,
-    /// The Modelica text.
+    /// The Modelica text that was compiled.
     pub augmented: AugmentedModel,
 }
 
 impl AssembledModel {
-    /// States of an effect through which a signal passes are as large as the signal.
+    /// Sets the sizes of the states of an effect through which a signal passes to the size of that signal.
     fn take_sizes_of(&mut self, attached: &HypothesisInstance<'_>) {
         let Some(size) = attached.hypothesis.passes.filter(|s| s.is_normal()) else { return };
         let instances = format!("{}_", attached.name);
@@ -131,33 +140,33 @@ impl AssembledModel {
     }
 }
 
-/// A hypothesis with one choice of its shapes and values of its coefficients.
+/// A hypothesis with values of its coefficients and shapes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HypothesisValues {
     /// Index into [`DiagnosisProblem::hypotheses`].
     pub hypothesis: usize,
-    /// Values of coefficients, then of shapes.
+    /// Values of its coefficients, then of its shapes, SI.
     pub values: Vec<f64>,
 }
 
 impl DiagnosisProblem<'_> {
-    /// Its recordings, to fit models to for so long.
+    /// The train recordings as a task for fits until a deadline.
     pub fn task<'b>(&'b self, until: Deadline<'b>) -> FitTask<'b> {
         FitTask { train: &self.train, full_scale: &self.full_scale, until }
     }
 
-    /// The unit of a signal's variable, as written.
+    /// Unit of a signal's variable as written; empty without one.
     pub fn unit(&self, signal: &SensorSignal) -> String {
         self.circuit.units.get(&signal.variable).cloned().unwrap_or_default()
     }
 
-    /// Physical sources: those at nodes.
+    /// Indices of the disturbances that act at nodes.
     pub fn node_sources(&self) -> Vec<usize> {
         let at_node = |d: &Hypothesis| matches!(d.attachments[0].site, AttachmentSite::Node(_));
         (0..self.disturbances.len()).filter(|&i| at_node(&self.disturbances[i])).collect()
     }
 
-    /// Median time between samples, s; 0 without any.
+    /// Median time between samples over all train recordings, s; 0 without any.
     pub fn step(&self) -> f64 {
         let steps =
             |r: &RecordingData| r.times.windows(2).map(|w| w[1] - w[0]).filter(|h| *h > 0.0).collect::<Vec<f64>>();
@@ -166,7 +175,7 @@ impl DiagnosisProblem<'_> {
         steps.get(steps.len() / 2).copied().unwrap_or(0.0)
     }
 
-    /// The nominal model with hypotheses and sources; coefficients and shapes of the hypotheses are free.
+    /// The nominal model with hypotheses and disturbance sources attached. Coefficients and shapes are free.
     ///
     /// # Errors
     /// The diagnostics of the compiler: a hypothesis that cannot be attached.
@@ -174,7 +183,8 @@ impl DiagnosisProblem<'_> {
         self.assembled(chosen, sources, chosen.len())
     }
 
-    /// The same where only the first `shaped` hypotheses have free shapes: shapes that stand still cost less.
+    /// As [`DiagnosisProblem::assemble`], but only the first `shaped` hypotheses have free shapes. Fixed shapes cost
+    /// less.
     ///
     /// # Errors
     /// As [`DiagnosisProblem::assemble`].
@@ -194,6 +204,7 @@ impl DiagnosisProblem<'_> {
         }));
         let augmented = augment::augment(&self.circuit, &all, &self.signals);
         let flat = self.flat(&augmented)?;
+        // a hypothesis with fixed shapes frees as many parameters as it has coefficients
         let still = |(i, c): (usize, &HypothesisValues)| {
             let count = self.hypotheses[c.hypothesis].coefficients.len();
             if i < shaped { usize::MAX } else { count }
@@ -210,7 +221,7 @@ impl DiagnosisProblem<'_> {
         Ok(model)
     }
 
-    /// Puts what the nominal model says of the signals into the train recordings; `None` where it does not reach the end.
+    /// Replaces the signals of the train recordings by those of the nominal model. `None` if a simulation stops early.
     pub fn show(&mut self) -> Option<()> {
         let shown = self.observe(&self.signals)?;
         let mut from = 0;
@@ -222,13 +233,14 @@ impl DiagnosisProblem<'_> {
         Some(())
     }
 
-    /// What the nominal model says of further variables over all train recordings, one after the other, from its own
-    /// start; `None` where it does not reach the end.
+    /// Values of further variables in the nominal model, started as it is, over all train recordings one after the
+    /// other. Outer index variable. `None` if a simulation stops early.
     pub fn observe(&self, variables: &[SensorSignal]) -> Option<Vec<Vec<f64>>> {
         self.observe_with(&[], None, variables)
     }
 
-    /// The same of a model with hypotheses, whose parameters within their tolerances are these, SI.
+    /// The same for a model with hypotheses. `tolerances`: values of the tolerance parameters, SI; `None` means nominal
+    /// ones.
     pub fn observe_with(
         &self,
         chosen: &[HypothesisValues],
@@ -251,8 +263,8 @@ impl DiagnosisProblem<'_> {
         Some(all)
     }
 
-    /// Takes down how far the states of the nominal model move from its own start: what its author gave as their sizes
-    /// may be a default.
+    /// Fills `travel`. The `nominal` attributes of the states may be defaults, so their real range is needed for step
+    /// control.
     pub fn explore(&mut self) {
         let Ok(model) = self.assemble(&[], &[]) else { return };
         let variables = &model.plan.system.dae.variables;
@@ -271,7 +283,7 @@ impl DiagnosisProblem<'_> {
         self.travel = signals.into_iter().map(|s| s.variable).zip(trajectories.iter().map(travel)).collect();
     }
 
-    /// The flat model of an augmented text.
+    /// Compiles an augmented text to flat equations.
     fn flat(&self, augmented: &AugmentedModel) -> Result<FlatModel, Vec<Diagnostic>> {
         let (overlay, request) =
             augment::request(self.world, &self.request, self.folder.as_deref(), augmented, "Augmented");
@@ -279,7 +291,7 @@ impl DiagnosisProblem<'_> {
         outcome.value.map(|f| f.flat).ok_or(outcome.diagnostics)
     }
 
-    /// A choice as the augmenter takes it.
+    /// A hypothesis with its values in the form in which `augment` takes it, under the instance name `name`.
     pub fn attached(&self, chosen: &HypothesisValues, name: &str) -> HypothesisInstance<'_> {
         let hypothesis = &self.hypotheses[chosen.hypothesis];
         let coefficients = hypothesis.coefficients.iter().map(super::effects::EffectCoefficient::label);
@@ -288,7 +300,8 @@ impl DiagnosisProblem<'_> {
         HypothesisInstance { name: name.into(), hypothesis, values }
     }
 
-    /// `counts`: how many of the parameters of each hypothesis are free.
+    /// Lifts tolerances, sources and the parameters of hypotheses to parameters with derivatives.
+    /// `counts`: number of parameters of each hypothesis that are free.
     fn lifted(
         &self,
         flat: FlatModel,
@@ -298,12 +311,13 @@ impl DiagnosisProblem<'_> {
         let mut ids: Vec<VarId> = Vec::new();
         let mut add = |name: &str| -> Option<usize> {
             let v = variable(&flat, name)?;
-            // a parameter may stand in several places of the list
+            // a parameter may be a tolerance and a hypothesis at once; it is lifted once
             Some(ids.iter().position(|x| *x == v).unwrap_or_else(|| {
                 ids.push(v);
                 ids.len() - 1
             }))
         };
+        // tolerances come first, so that `free` begins at 0
         for t in &self.tolerances {
             add(&format!("{PLANT}.{}", t.name));
         }
@@ -311,6 +325,7 @@ impl DiagnosisProblem<'_> {
         let mut sources = Vec::new();
         let mut attached = Vec::new();
         let (effect_names, source_names) = augmented.parameters.split_at(counts.len());
+        // sources follow the hypotheses in the text, but the tolerances in the plan
         for names in source_names {
             sources.extend(names.iter().filter_map(|n| add(n)));
         }
@@ -322,6 +337,7 @@ impl DiagnosisProblem<'_> {
         let plan = Arc::new(EvaluationPlan::new(&lift(&flat, &ids, &outputs))?);
         let theta = plan.parameter_values();
         let u = vec![0.0; plan.inputs()];
+        // declared sizes of the states, evaluated where the first recording begins
         let sizes = match self.train.first() {
             Some(r) => {
                 let u = InputSegment::new(r).from;
@@ -336,7 +352,7 @@ impl DiagnosisProblem<'_> {
         };
         let travel: Vec<f64> = plan.state_variables().map(travel).collect();
         for (i, (size, &travel)) in sizes.iter_mut().zip(&travel).enumerate() {
-            // laws repeat over a turn
+            // an angle may turn on and on, but laws repeat with every turn
             if travel > DEFAULT * *size && plan.state_unit(i) != Some("rad") {
                 *size = travel;
             }
@@ -357,12 +373,12 @@ impl DiagnosisProblem<'_> {
     }
 }
 
-/// The name of a chosen hypothesis among the parameters and instances of a model.
+/// Instance name of the chosen hypothesis of this number.
 fn instance(number: usize) -> String {
     format!("e{number}")
 }
 
-/// What flows through the first instance of a chosen hypothesis, SI; nothing where it is a signal or a parameter.
+/// The variable that flows through the first instance of a chosen hypothesis, SI; `None` for signals and parameters.
 pub fn through(number: usize, hypothesis: &Hypothesis) -> Option<SensorSignal> {
     let effect = hypothesis.attachments[0].effect.as_ref()?;
     let through = effect.interface.through.as_ref()?;
@@ -370,12 +386,12 @@ pub fn through(number: usize, hypothesis: &Hypothesis) -> Option<SensorSignal> {
     Some(SensorSignal { name: format!("through_{number}"), variable, scale: 1.0 })
 }
 
-/// The name that a variable of the nominal model has there.
+/// Name of a variable in the nominal model; `None` for one that the augmentation added.
 fn of_plant(name: &str) -> Option<&str> {
     name.strip_prefix(PLANT)?.strip_prefix('.')
 }
 
-/// A variable by its name.
+/// Identifier of a variable by its name.
 pub fn variable(flat: &FlatModel, name: &str) -> Option<VarId> {
     let i = flat.variables.iter().position(|v| v.name == name)?;
     Some(VarId(u32::try_from(i).expect("fewer than 2^32 variables")))

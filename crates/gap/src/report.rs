@@ -1,6 +1,7 @@
 //! The diagnosis as one HTML page: words, the network with the places of the gap, tables, and curves of every signal.
 //!
-//! The page needs no network and no other file; the curves can be zoomed like those of `bramah plot`.
+//! Enters: problem, result of the search, verdict and held recordings. Leaves: the text of the page, which needs no
+//! network and no other file. Called by `diagnose`.
 
 use super::data::RecordingData;
 use super::estimate::candidate::{CandidateModel, RecordingResiduals};
@@ -19,13 +20,13 @@ use bramah_plot::svg::escape;
 use bramah_plot::{Figure, FigurePanel, PlotSeries, html};
 use std::fmt::Write;
 
-/// Deviations of so many tolerances are set off in the table.
+/// Deviation in tolerances from which on the table highlights a parameter.
 const FAR: f64 = 2.0;
 
-/// What a model left, signal by signal, with the model's name.
+/// Name of a model and the whiteness of its residuals, per signal.
 type ModelWhiteness = (&'static str, Vec<Whiteness>);
 
-/// Writes the page.
+/// Writes the page. The curves are simulated anew, for train and held recordings.
 pub fn report(
     problem: &DiagnosisProblem<'_>,
     found: &EffectSearchResult,
@@ -41,8 +42,8 @@ pub fn report(
     for (file, recording) in others {
         panels.extend(curves(problem, found, recording, None, &format!("{file}, held")));
     }
-    // without effects both are one
     let fits = [("within tolerances", &found.base.fit), ("with effects", &found.last.fit)];
+    // without effects both models are the same
     let fits = &fits[..1 + usize::from(!verdict.effects.is_empty())];
     let of = |errors: &[RecordingResiduals]| whiteness(errors, &problem.train, &problem.noise_floor);
     let left: Vec<ModelWhiteness> = fits.iter().map(|(stage, fit)| (*stage, of(&fit.evaluated.errors))).collect();
@@ -59,10 +60,10 @@ pub fn report(
     html::write_around(&figure, &facts, &before(problem, verdict, &left))
 }
 
-/// Everything above the curves.
+/// HTML of everything above the curves: words, network and tables.
 fn before(problem: &DiagnosisProblem<'_>, v: &Verdict, left: &[ModelWhiteness]) -> String {
     let line = |line: &str| format!("<p>{}</p>\n", escape(line));
-    // the gap has a table of its own below
+    // the text's own table of the gap is left out: an HTML table follows below
     let mut out: String = [findings(v), rest(v)].concat().lines().map(line).collect();
     out.push_str(&picture(problem, v));
     out.push_str(&table("Effects", EFFECTS, &effects(v)));
@@ -85,14 +86,17 @@ fn before(problem: &DiagnosisProblem<'_>, v: &Verdict, left: &[ModelWhiteness]) 
     out
 }
 
-/// The network; the more certain a gap at a place, the deeper its colour.
+/// Drawing of the network; the stronger the evidence at a place, the deeper its colour. Empty if the model does not
+/// compile. Each mark carries the place, its kind and its evidence as a note.
 fn picture(problem: &DiagnosisProblem<'_>, v: &Verdict) -> String {
     let Some(flattened) = flatten(problem.world, &problem.request).value else { return String::new() };
     let most = v.places.iter().map(|p| p.evidence).fold(0.0, f64::max);
     let mut marks = Vec::new();
     for p in v.places.iter().filter(|p| p.evidence > 0.0) {
+        // the root keeps weaker places visible
         let heat = (p.evidence / most).sqrt();
         let note = format!("{} ({}): {:.0} nats", p.place, p.kind, p.evidence);
+        // a sensor has no place in the network, but the variable that it measures has
         let sensed = problem.signals.iter().find(|s| p.kind == "sensor" && s.name == p.place);
         let names = p.node.iter().chain(sensed.map(|s| &s.variable));
         marks.extend(names.map(|name| HeatMark { name: name.clone(), heat, note: note.clone() }));
@@ -101,6 +105,7 @@ fn picture(problem: &DiagnosisProblem<'_>, v: &Verdict) -> String {
     format!("<div class=\"network\">{drawn}</div>\n")
 }
 
+/// Columns of the table of effects.
 const EFFECTS: &[&str] = &[
     "effect",
     "class",
@@ -112,15 +117,21 @@ const EFFECTS: &[&str] = &[
     "closes last",
     "indistinguishable from",
 ];
+/// Columns of the table of gaps.
 const GAPS: &[&str] = &["recordings", "signal", "nominal", "within tolerances", "with effects", "sensor noise"];
+/// Columns of the table of parameters.
 const DRIFTS: &[&str] = &["parameter", "nominal", "fitted", "std", "tolerances"];
+/// Columns of the table of places.
 const PLACES: &[&str] = &["place", "kind", "evidence in nats", "share", "the same place"];
+/// Columns of the table of what stays unexplained.
 const UNEXPLAINED: &[&str] = &["share of the nominal gap", "place", "shape", "closes"];
+/// Columns of the table of judged hypotheses.
 const WEIGHED: &[&str] =
     &["step", "effect", "places", "leaves, of full scale", "t", "evidence in nats", "why not taken"];
+/// Columns of the table of whiteness; the value of a complete model is in brackets.
 const WHITE: &[&str] = &["signal", "model", "mean square (1)", "correlation of neighbours (0)", "white noise at most"];
 
-/// A table of cells that are HTML already; nothing without rows.
+/// A table of cells that are HTML already; empty without rows.
 fn table(title: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
     if rows.is_empty() {
         return String::new();
@@ -139,6 +150,7 @@ fn table(title: &str, heads: &[&str], rows: &[Vec<String>]) -> String {
     out
 }
 
+/// Rows of accepted effects, one per effect, with parameters and alternatives in one cell each.
 fn effects(v: &Verdict) -> Vec<Vec<String>> {
     let row = |e: &VerdictEffect| {
         let parameters: Vec<String> =
@@ -167,10 +179,12 @@ fn effects(v: &Verdict) -> Vec<Vec<String>> {
     v.effects.iter().map(row).collect()
 }
 
+/// A share in per cent; `unknown` if there is none.
 fn share(v: OptionalNumber) -> String {
     v.map_or_else(|| "unknown".to_string(), percent)
 }
 
+/// Rows of the gaps on held and on train recordings, signal by signal.
 fn gaps(v: &Verdict) -> Vec<Vec<String>> {
     let signal = |which: &str, name: &str, g: &SignalGap| {
         let cells = gap_row(name, g).map(|cell| escape(&cell));
@@ -186,6 +200,7 @@ fn gaps(v: &Verdict) -> Vec<Vec<String>> {
     [rows("held", &v.gap.held), rows("used", &v.gap.train)].concat()
 }
 
+/// Rows of the parameters. Deviations of [`FAR`] tolerances and more are highlighted.
 fn drifts(v: &Verdict) -> Vec<Vec<String>> {
     let row = |d: &super::verdict::ParameterDrift| {
         let deviation = d.tolerances.map_or_else(|| "free".to_string(), |t| format!("{t:+.2}"));
@@ -196,6 +211,7 @@ fn drifts(v: &Verdict) -> Vec<Vec<String>> {
     v.drifts.iter().map(row).collect()
 }
 
+/// Rows of the places with their evidence.
 fn places(v: &Verdict) -> Vec<Vec<String>> {
     let row = |p: &super::verdict::PlaceEvidence| {
         let node = escape(&p.node.join(", "));
@@ -204,7 +220,7 @@ fn places(v: &Verdict) -> Vec<Vec<String>> {
     v.places.iter().map(row).collect()
 }
 
-/// What no effect explains, by its shape.
+/// Rows of what no effect explains: one for each term of the shape.
 fn unexplained(v: &Verdict) -> Vec<Vec<String>> {
     let u = &v.unexplained;
     let place = u.place.as_deref().map_or_else(|| "unknown".to_string(), escape);
@@ -216,7 +232,7 @@ fn unexplained(v: &Verdict) -> Vec<Vec<String>> {
     }
 }
 
-/// What was fitted, with the reason why it was not taken.
+/// Rows of fitted hypotheses, with the reason why each was not taken.
 fn weighed(v: &Verdict) -> Vec<Vec<String>> {
     let digits = |v: OptionalNumber, digits: usize| v.map_or_else(String::new, |v| format!("{v:.digits$}"));
     let row = |w: &HypothesisAssessment| {
@@ -234,13 +250,14 @@ fn weighed(v: &Verdict) -> Vec<Vec<String>> {
     v.weighed.iter().filter(|w| w.gap.is_some()).map(row).collect()
 }
 
-/// How many hypotheses were not fitted.
+/// Paragraph with the number of hypotheses that were not fitted.
+/// They have no scores and would make the table long.
 fn not_fitted(v: &Verdict) -> String {
     let count = v.weighed.iter().filter(|w| w.gap.is_none()).count();
     format!("<p>{count} more were not fitted: a linear step promised too little. The JSON verdict lists them.</p>\n")
 }
 
-/// How far what is left is from white noise of the size of the sensor's.
+/// Rows of whiteness, one per signal and model. A correlation beyond its limit is highlighted.
 fn white(problem: &DiagnosisProblem<'_>, left: &[ModelWhiteness]) -> Vec<Vec<String>> {
     let row = |name: &str, stage: &str, w: &Whiteness| {
         let coloured = w.neighbours.abs() > w.limit;
@@ -255,7 +272,8 @@ fn white(problem: &DiagnosisProblem<'_>, left: &[ModelWhiteness]) -> Vec<Vec<Str
     problem.signals.iter().enumerate().flat_map(signal).collect()
 }
 
-/// Spectra of what is left of all signals, in decibels over the sensors' noise.
+/// Panel of the spectra of a model's residuals, in decibels over the sensors' noise.
+/// At 0 dB a residual is white noise of the sensor's size.
 fn spectrum(problem: &DiagnosisProblem<'_>, (stage, left): &ModelWhiteness) -> FigurePanel {
     let level = |d: &f64| if *d > 0.0 { 10.0 * d.log10() } else { f64::NAN };
     let series = |(i, (s, w)): (usize, (&SensorSignal, &Whiteness))| {
@@ -269,10 +287,11 @@ fn spectrum(problem: &DiagnosisProblem<'_>, (stage, left): &ModelWhiteness) -> F
     }
 }
 
-/// The nominal model against every recording used, without a diagnosis.
+/// Figure of the nominal model and every train recording, without a diagnosis. Nothing is fitted but the initial
+/// states.
 ///
 /// # Errors
-/// The recording that the model cannot follow, and when its simulation stops, s.
+/// File of the first recording whose simulation stops early, and the time at which it stops, s.
 pub fn compared(problem: &DiagnosisProblem<'_>, nominal: &CandidateModel) -> Result<Figure, (String, f64)> {
     let x = nominal.present();
     let mut panels = Vec::new();
@@ -286,7 +305,8 @@ pub fn compared(problem: &DiagnosisProblem<'_>, nominal: &CandidateModel) -> Res
     Ok(Figure { title: format!("{} and its recordings", problem.circuit.class), panels, shared_x: false })
 }
 
-/// A recording, signal by signal, against the nominal model and the corrected one. `number`: among the recordings used.
+/// Panels of a recording: measured, nominal and corrected model. `number`: index among the train recordings, if it is
+/// one. `what`: words for the axis, as the file.
 fn curves(
     problem: &DiagnosisProblem<'_>,
     found: &EffectSearchResult,
@@ -300,13 +320,15 @@ fn curves(
     beside(problem, recording, &[("nominal", 1, of_nominal), ("corrected", 0, of_last)], what)
 }
 
-/// A recording, signal by signal, with what models make of it: name, colour, what each leaves.
+/// Panels of a recording, one per signal, with curves of models given by name, colour and residuals.
+/// Values are in the unit of the study's column. A model without residuals has no curve.
 fn beside(
     problem: &DiagnosisProblem<'_>,
     recording: &RecordingData,
     models: &[(&str, usize, Option<RecordingResiduals>)],
     what: &str,
 ) -> Vec<FigurePanel> {
+    // residuals begin behind the samples from which the initial state is estimated
     let behind = |errors: &RecordingResiduals| recording.len() - errors.first().map_or(0, Vec::len);
     let panel = |(i, signal): (usize, &SensorSignal)| {
         let measured = &recording.signals[i];
@@ -320,6 +342,7 @@ fn beside(
         for (name, colour, errors) in models {
             let Some(errors) = errors else { continue };
             let from = behind(errors);
+            // simulated is measured minus residual
             let simulated: Vec<f64> = measured[from..].iter().zip(&errors[i]).map(|(y, e)| y - e).collect();
             series.push(curve(name, &recording.times[from..], &in_unit(&simulated), *colour));
         }
@@ -333,6 +356,7 @@ fn beside(
     problem.signals.iter().enumerate().map(panel).collect()
 }
 
+/// A curve of a panel; `colour` is an index into the palette.
 fn curve(name: &str, x: &[f64], y: &[f64], colour: usize) -> PlotSeries {
     PlotSeries { name: name.into(), x: x.to_vec(), y: y.to_vec(), colour, ..PlotSeries::default() }
 }

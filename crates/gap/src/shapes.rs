@@ -1,5 +1,9 @@
-//! Grids of shapes fitted to what the recordings can show: times to the sampling step, thresholds to the values that
-//! occur, forms over a potential to its range, frequencies to the lines that the nominal model has not.
+//! Fits the grids of nonlinear parameters to what the recordings can show.
+//!
+//! Times go to the sampling step, thresholds to values that occur, speeds and distances to the motion, frequencies to
+//! spectral lines that the nominal model lacks. Hypotheses whose grid becomes empty are removed.
+//! Enters and leaves: the problem, before the search. Called by `study`. Method: `docs/gap_method.md`, "Order of the
+//! hypotheses", second paragraph.
 
 use super::circuit::{CircuitTopology, same_kind};
 use super::data::RecordingData;
@@ -10,38 +14,41 @@ use super::problem::DiagnosisProblem;
 use bramah_expr::units::MeasurementUnit;
 use std::collections::BTreeMap;
 
-/// The sampling step for which the effects' own grids of times are made, s.
+/// Sampling step for which the effects' own grids of times are made, s.
 const STEP: f64 = 1e-3;
-/// Times are at most this part of the longest recording, and are looked for, a decade further each, up to this one.
+/// Greatest time of a shape, as part of the longest recording.
 const LASTING: f64 = 1.0 / 3.0;
+/// Greatest time that is added to the grid, decade by decade, as part of the longest recording.
 const LOOKED_FOR: f64 = 0.1;
-/// Thresholds are tried where so much of what occurs lies below them.
+/// Quantiles of the values that occur at which thresholds are tried.
 const QUANTILES: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 0.95];
-/// Part of the speeds that are no jumps.
+/// Part of the speeds that are kept; the greatest ones are jumps.
 const USUAL: f64 = 0.995;
-/// A corner is at most so wide, in parts of the greatest value at its place: what moves less would never leave it.
+/// Greatest width of a corner, in parts of the greatest value at its place. What moves less would never leave the
+/// corner.
 const CORNER: f64 = 0.02;
-/// Distances (play, deflection before a friction breaks loose) are looked for in decades between these parts of the travel: the
-/// resolution of a fine position sensor, and a play that takes a third of the motion.
+/// Least and greatest distance that is tried (play, deflection before a friction breaks loose), in parts of the travel:
+/// the resolution of a fine position sensor, and a play of a third of the motion.
 const DISTANCES: [f64; 2] = [1e-5, 0.3];
-/// One turn, rad: a shaft that turns on and on has no longer travel.
+/// Greatest travel of a shaft, rad: one that turns on and on has no longer travel.
 const TURN: f64 = std::f64::consts::TAU;
-/// Friction that falls with speed falls over these parts of the greatest speed.
+/// Speeds over which a friction that falls with speed falls, in parts of the greatest speed.
 const FALLS: [f64; 3] = [0.01, 0.05, 0.2];
 
-/// What is periodic is seen to come again: periods that the recordings cover, at least.
+/// Least number of periods that the recordings must cover for something periodic to be seen.
 const REPEATS: f64 = 2.0;
-/// Pressure of the surroundings, Pa.
+/// Ambient pressure, Pa.
 const ATMOSPHERE: f64 = 101_325.0;
 
-/// A variable of a port: its potential, or what flows through it.
+/// A variable of a port: port index, and `true` for what flows through it, `false` for its potential.
 type PortVariable = (usize, bool);
-/// What the nominal model says of such variables over all recordings, one after the other, SI.
+/// Trajectories of such variables in the nominal model over all recordings one after the other, SI.
 type NominalTrajectories = BTreeMap<PortVariable, Vec<f64>>;
-/// A limit of a signal is tried at these parts of the way from its least to its greatest size.
+/// Parts of the way from the least to the greatest size of a signal at which limits are tried.
 const PARTS: [f64; 4] = [0.4, 0.6, 0.8, 0.97];
 
-/// Fits all grids.
+/// Fits the grids of all hypotheses, and removes hypotheses that cannot be fitted to these recordings.
+/// Coefficients that differ from recording to recording are multiplied, and parameters for ranges get their values.
 pub fn fit(problem: &mut DiagnosisProblem<'_>) {
     let slower = problem.step() / STEP;
     let longest = problem.train.iter().map(RecordingData::duration).fold(0.0, f64::max);
@@ -56,8 +63,10 @@ pub fn fit(problem: &mut DiagnosisProblem<'_>) {
         })
     };
     let periodic = problem.hypotheses.iter().any(|h| h.shapes.iter().any(|s| s.line));
+    // the spectra take a run of the nominal model, so they are only computed for hypotheses that need them
     let lines = if periodic { lines::lines(problem) } else { Vec::new() };
     let mut hypotheses = std::mem::take(&mut problem.hypotheses);
+    // ambient pressure and ranges are parameters of the effect instances, not shapes
     let attachments = hypotheses.iter_mut().flat_map(|h| &mut h.attachments);
     attachments.for_each(|a| take_surroundings(a, &potentials, &times));
     hypotheses.retain_mut(|h| h.attachments.iter_mut().all(ranged));
@@ -68,9 +77,10 @@ pub fn fit(problem: &mut DiagnosisProblem<'_>) {
         let site = h.attachments[0].site.clone();
         let size = size(&site, &sizes);
         if let (AttachmentSite::Command(_), Some((_, most))) = (&site, size) {
-            // the range of a command shows in the recordings only
+            // the model does not state the range of a command; the recordings show it
             h.passes = Some(most);
         }
+        // the kinds of shapes exclude each other; the first that fits counts
         for shape in &mut h.shapes {
             if let (true, Some(travel)) = (shape.order, turned(&site, &potentials, &problem.circuit)) {
                 shape.grid.retain(|n| n * travel >= REPEATS);
@@ -93,7 +103,8 @@ pub fn fit(problem: &mut DiagnosisProblem<'_>) {
                 shape.grid = QUANTILES.iter().map(|q| occurs[(q * (occurs.len() - 1) as f64) as usize]).collect();
                 shape.grid.retain(|x| *x > 0.0);
                 shape.grid.dedup();
-                // a brim makes no sense at the pressures of a press, nor a relief valve at those of a level
+                // a grid outside of the bounds belongs to another kind of machine: a brim to levels, a relief valve to
+                // high pressures
                 if shape.grid.iter().any(|x| shape.min.is_some_and(|m| *x < m) || shape.max.is_some_and(|m| *x > m)) {
                     shape.grid.clear();
                 }
@@ -108,7 +119,7 @@ pub fn fit(problem: &mut DiagnosisProblem<'_>) {
     problem.hypotheses.retain(|h| h.shapes.iter().all(|s| !s.grid.is_empty()));
 }
 
-/// Coefficients that differ from recording to recording, one for each.
+/// Replaces coefficients that differ from recording to recording by one for each recording.
 fn each_its_own(coefficients: &mut Vec<EffectCoefficient>, recordings: usize) {
     let (own, mut all): (Vec<_>, Vec<_>) = coefficients.drain(..).partition(|c| c.recording.is_some());
     let numbered = |k: usize| own.iter().map(move |c| EffectCoefficient { recording: Some(k), ..c.clone() });
@@ -116,16 +127,18 @@ fn each_its_own(coefficients: &mut Vec<EffectCoefficient>, recordings: usize) {
     *coefficients = all;
 }
 
-/// A corner that is left by most of what occurs, and may be as wide as all of it.
+/// Limits a corner so that most of what occurs leaves it. As a free width it may become as wide as all of what occurs.
 fn corner(shape: &mut ShapeParameter, most: f64) {
     shape.grid[0] = shape.grid[0].min(CORNER * most);
     shape.occurs = Some(most);
 }
 
-/// A time within what the recordings show: what takes longer than a part of them to fade is not seen to fade at all.
+/// Scales times to the sampling step and limits them by the length of the recordings. What takes longer to fade is not
+/// seen to fade at all.
 fn time(shape: &mut ShapeParameter, slower: f64, longest: f64) {
     let most = LASTING * longest;
     shape.grid.iter_mut().for_each(|x| *x = (*x * slower).min(most));
+    // up from the largest value of the grid, a decade each
     let further = |x: &f64| Some(10.0 * x).filter(|x| *x <= LOOKED_FOR * longest);
     let last = shape.grid.last().copied();
     shape.grid.extend(std::iter::successors(last.as_ref().and_then(further), further));
@@ -133,7 +146,7 @@ fn time(shape: &mut ShapeParameter, slower: f64, longest: f64) {
     shape.max = Some(shape.max.map_or(most, |m| m.min(most)));
 }
 
-/// Distances in decades from the effect's own, down to what no machine shows and up to what hinders every motion.
+/// Adds distances in decades around the effect's own, within the limits of [`DISTANCES`].
 fn distances(shape: &mut ShapeParameter, travel: f64) {
     let [least, most] = DISTANCES.map(|part| part * travel);
     let Some((low, high)) = extent(&shape.grid) else { return };
@@ -144,7 +157,7 @@ fn distances(shape: &mut ShapeParameter, travel: f64) {
     shape.grid.sort_by(f64::total_cmp);
 }
 
-/// Ports at which an effect acts, where a potential of theirs counts.
+/// Ports of a site at a node or between two nodes; empty for other sites.
 fn ports(site: &AttachmentSite) -> Vec<usize> {
     match *site {
         AttachmentSite::Node(p) => vec![p],
@@ -153,23 +166,23 @@ fn ports(site: &AttachmentSite) -> Vec<usize> {
     }
 }
 
-/// Whether a shape is the speed over which a friction changes sign, or falls.
+/// Whether a shape is a speed: one over which a friction changes sign, or falls.
 fn is_speed(shape: &ShapeParameter) -> bool {
     ["rad/s", "m/s"].iter().any(|u| same_kind(&shape.unit, u))
 }
 
-/// Whether a shape is the width over which something changes sign: it has one value, in the unit of what changes it.
+/// Whether a shape is a width over which something changes sign: it has a single value, in the unit of what changes it.
 fn is_corner(shape: &ShapeParameter) -> bool {
     shape.grid.len() == 1 && !shape.relative && !shape.unit.is_empty()
 }
 
-/// Whether a shape is a distance of two bodies.
+/// Whether a shape is a distance of two bodies, such as a play.
 fn is_distance(shape: &ShapeParameter) -> bool {
     ["rad", "m"].iter().any(|u| same_kind(&shape.unit, u))
 }
 
-/// Greatest size of what a corner's effect depends on: the potential of its place, or what flows through it; nothing where
-/// the shape has another unit, or nothing happens.
+/// Greatest absolute value of what a corner depends on: the potential of its site, or what flows through it.
+/// `None` if the shape has another unit, or nothing moves.
 fn greatest(
     shape: &ShapeParameter,
     site: &AttachmentSite,
@@ -187,19 +200,19 @@ fn greatest(
     Some(most.max(-least)).filter(|most| *most > 0.0 && same_kind(&shape.unit, &p.unit))
 }
 
-/// How far a site travels, one side against the other where it has two; nothing where it stands still.
+/// Range of the potential of a site, of one side against the other if it has two; `None` if it stands still.
 fn travel(site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<f64> {
     let (least, most) = extent(&acting(site, potentials)?)?;
     Some((most - least).min(TURN)).filter(|t| *t > 0.0)
 }
 
-/// Least and greatest of some values; nothing where none is finite.
+/// Least and greatest finite value; `None` if there is none.
 fn extent(values: &[f64]) -> Option<(f64, f64)> {
     let finite = values.iter().copied().filter(|v| v.is_finite());
     finite.fold(None, |known: Option<(f64, f64)>, v| Some(known.map_or((v, v), |(l, m)| (l.min(v), m.max(v)))))
 }
 
-/// Turns that a shaft makes in the nominal model.
+/// Turns that a shaft makes in the nominal model; `None` for a potential that is no angle.
 fn turned(site: &AttachmentSite, potentials: &NominalTrajectories, circuit: &CircuitTopology) -> Option<f64> {
     let (AttachmentSite::Node(p) | AttachmentSite::Across(p, _)) = site else { return None };
     let angle = acting(site, potentials).filter(|_| same_kind(&circuit.ports[*p].potential.unit, "rad"))?;
@@ -207,12 +220,12 @@ fn turned(site: &AttachmentSite, potentials: &NominalTrajectories, circuit: &Cir
     Some((most - least) / TURN)
 }
 
-/// Greatest speed at a site, of one side against the other where it has two; nothing where it stands still.
+/// Greatest speed at a site, of one side against the other if it has two; `None` if it stands still.
 fn fastest(site: &AttachmentSite, potentials: &NominalTrajectories, times: &[&[f64]]) -> Option<f64> {
     speeds(&acting(site, potentials)?, times).last().copied().filter(|v| *v > 0.0)
 }
 
-/// The potential of a site, of one side against the other where it has two.
+/// Potential of a site, of one side against the other if it has two; `None` for other sites and unknown potentials.
 fn acting(site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<Vec<f64>> {
     let of = |p: usize| potentials.get(&(p, false));
     match *site {
@@ -222,6 +235,7 @@ fn acting(site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<Vec
     }
 }
 
+/// Variables of the first place of a hypothesis that its grids need.
 fn compared(h: &Hypothesis) -> impl Iterator<Item = PortVariable> {
     let measured =
         |s: &ShapeParameter| s.threshold || s.level || s.order || is_speed(s) || is_corner(s) || is_distance(s);
@@ -232,12 +246,13 @@ fn compared(h: &Hypothesis) -> impl Iterator<Item = PortVariable> {
     potentials.chain(through).filter(move |_| compared)
 }
 
-/// The parameter of an effect that is the pressure of the surroundings.
+/// Parameter of an effect for the ambient pressure; `None` if it has none.
 fn surroundings(a: &EffectAttachment) -> Option<&String> {
     a.effect.as_ref()?.surroundings.as_ref()
 }
 
-/// Counts pressures from the surroundings where the model does: no machine at rest has half of them.
+/// Sets the ambient pressure to 0 where the model counts pressures from it.
+/// That is assumed if a recording begins below half of the atmospheric pressure, which no machine at rest has.
 fn take_surroundings(a: &mut EffectAttachment, potentials: &NominalTrajectories, times: &[&[f64]]) {
     let Some((name, pressure)) = surroundings(a).cloned().zip(acting(&a.site, potentials)) else { return };
     let begins = times.iter().scan(0, |from, t| {
@@ -250,7 +265,7 @@ fn take_surroundings(a: &mut EffectAttachment, potentials: &NominalTrajectories,
     }
 }
 
-/// The variable whose range an effect takes.
+/// The variable whose range an effect takes; `None` if it takes none.
 fn ranged(a: &EffectAttachment) -> Option<PortVariable> {
     let effect = a.effect.as_ref()?;
     let range = effect.range.as_ref()?;
@@ -262,8 +277,8 @@ fn ranged(a: &EffectAttachment) -> Option<PortVariable> {
     read.find(|(q, _)| q.name == range.of).map(|(_, p)| (p, false))
 }
 
-/// The parameters that take the range of a potential, with their values; empty where it stands still or is not known,
-/// `None` for effects without.
+/// Parameters that take the range of a variable, with their values.
+/// Empty if the variable stands still or is unknown; `None` for effects without such parameters.
 fn range(a: &EffectAttachment, potentials: &NominalTrajectories, times: &[&[f64]]) -> Option<Vec<(String, String)>> {
     let names = a.effect.as_ref()?.range.as_ref()?;
     let potential = ranged(a).and_then(|p| potentials.get(&p)).map_or(&[][..], Vec::as_slice);
@@ -274,11 +289,12 @@ fn range(a: &EffectAttachment, potentials: &NominalTrajectories, times: &[&[f64]
     Some(if moves { vec![value(&names.least, least), value(&names.most, most)] } else { Vec::new() })
 }
 
-/// Sizes of the rate of a potential that is known over all recordings, one after the other; without the few greatest,
-/// which are jumps.
+/// Absolute rates of a potential over all recordings, sorted, without the greatest ones, which are jumps.
+/// `times`: times of the samples of each recording, s.
 fn speeds(potential: &[f64], times: &[&[f64]]) -> Vec<f64> {
     let mut from = 0;
     let mut speeds = Vec::new();
+    // no rate is taken across the end of a recording
     for times in times {
         let Some(own) = potential.get(from..from + times.len()) else { break };
         from += times.len();
@@ -290,7 +306,8 @@ fn speeds(potential: &[f64], times: &[&[f64]]) -> Vec<f64> {
     speeds
 }
 
-/// Variables of all ports that a threshold, a corner or a range needs, as the nominal model has them; empty where it has none.
+/// Variables of all ports that thresholds, corners and ranges need, in the nominal model; empty if a simulation stops
+/// early. The nominal model starts as it is, and all variables come from one run, in SI units.
 fn potentials(problem: &DiagnosisProblem<'_>) -> NominalTrajectories {
     let mut wanted: Vec<PortVariable> = problem.hypotheses.iter().flat_map(compared).collect();
     wanted.extend(problem.hypotheses.iter().flat_map(|h| &h.attachments).filter_map(ranged));
@@ -313,7 +330,8 @@ fn potentials(problem: &DiagnosisProblem<'_>) -> NominalTrajectories {
     wanted.into_iter().zip(found.unwrap_or_default()).map(in_si).collect()
 }
 
-/// What a threshold at this site is compared with, sorted.
+/// Values with which a threshold at this site is compared, sorted; `None` for other shapes.
+/// A level is compared with the first potential alone, also between two nodes.
 fn values(shape: &ShapeParameter, site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<Vec<f64>> {
     let mut values = match *site {
         _ if !shape.threshold && !shape.level => return None,
@@ -325,7 +343,8 @@ fn values(shape: &ShapeParameter, site: &AttachmentSite, potentials: &NominalTra
     if values.is_empty() { None } else { Some(values) }
 }
 
-/// Least and greatest size of each signal, of each input, and of each signal inside the model as the nominal one has it.
+/// Least and greatest absolute value of each signal, input and signal inside the model, by name. What stands still is
+/// left out.
 fn sizes(problem: &DiagnosisProblem<'_>) -> BTreeMap<String, (f64, f64)> {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let start = (f64::INFINITY, 0.0_f64);
@@ -353,6 +372,7 @@ fn sizes(problem: &DiagnosisProblem<'_>) -> BTreeMap<String, (f64, f64)> {
     sizes
 }
 
+/// Least and greatest absolute value of the signal of a site; `None` for other sites and signals that stand still.
 fn size(site: &AttachmentSite, sizes: &BTreeMap<String, (f64, f64)>) -> Option<(f64, f64)> {
     match site {
         AttachmentSite::Sensor(name) | AttachmentSite::Command(name) => sizes.get(name).copied(),

@@ -1,4 +1,9 @@
-//! From a study to a problem.
+//! From a study file and its recordings to a [`DiagnosisProblem`].
+//!
+//! Enters: a `Study` (read by `bramah_analysis::study`) and a `World`. Leaves: a [`DiagnosisStudy`], or the diagnostics
+//! of what is wrong. It compiles the nominal model, binds the study to it, loads recordings, and fits the hypotheses'
+//! grids to them. Called by `diagnose`, by the command for plans (`planned`) and for lists of hypotheses
+//! ([`proposed`]).
 
 use super::capacity;
 use super::circuit::{self, CircuitTopology};
@@ -21,22 +26,23 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Standard deviation assumed for a parameter that the study does not speak of, as part of its value.
+/// Standard deviation assumed for parameters if the study states no tolerance, as part of their value.
 pub const ASSUMED: f64 = 0.05;
 
-/// Noise of a sensor of which the study says no accuracy, as part of its range, before anything was measured.
+/// Noise of a sensor without a stated accuracy, as part of its range, in a plan.
 const ACCURACY: f64 = 3e-3;
 
-/// Between the samples of a recording a model is evaluated point by point, and nothing there rings its clocks.
+/// Message for a model that samples: the diagnosis evaluates it point by point between the samples of a recording, so
+/// its clocks would never tick.
 const SAMPLED: &str = "the diagnosis cannot follow a model that samples";
 
-/// A study with its model read.
+/// A study with its problem.
 pub struct DiagnosisStudy<'a> {
     /// What is diagnosed.
     pub problem: DiagnosisProblem<'a>,
-    /// The study tied to the model.
+    /// The study bound to the variables of the model.
     pub bound: BoundStudy,
-    /// The nominal model.
+    /// The nominal model, flattened.
     flat: FlatModel,
     /// Warnings.
     pub diagnostics: Vec<Diagnostic>,
@@ -44,36 +50,36 @@ pub struct DiagnosisStudy<'a> {
 
 /// Recordings that take no part in fitting.
 pub struct HoldoutData {
-    /// Their names, for messages alone.
+    /// Their files, for messages.
     pub files: Vec<String>,
-    /// What was recorded.
+    /// The recordings.
     pub recordings: Vec<RecordingData>,
 }
 
-/// Why a study cannot be used, with the texts its messages point into.
+/// Why a study cannot be used.
 pub struct StudyError {
     /// What is wrong.
     pub diagnostics: Vec<Diagnostic>,
-    /// Texts of the model, if the trouble is there.
+    /// Texts of the model, if the diagnostics point into them; `None` if they point into the study.
     pub sources: Option<Sources>,
     /// The nominal model is wrong, not the study.
     pub model: bool,
 }
 
 impl StudyError {
+    /// An error of the study.
     fn study(diagnostics: Vec<Diagnostic>) -> Self {
         StudyError { diagnostics, sources: None, model: false }
     }
 
+    /// An error of the nominal model, from a failed compilation.
     fn model<T>(outcome: bramah_model::compile::CompileOutcome<T>) -> Self {
         StudyError { diagnostics: outcome.diagnostics, sources: Some(outcome.sources), model: true }
     }
 }
 
-/// Reads everything that a study names but its held recordings.
-///
-/// # Errors
-/// [`StudyError`].
+/// Builds the problem: places, hypotheses with fitted grids, tolerances, noise.
+/// Errors of recordings are added last, since they have nothing that could be fitted to the recordings.
 pub fn question<'a>(
     world: &'a dyn World,
     study: &Study,
@@ -85,8 +91,8 @@ pub fn question<'a>(
     nominal.question(world, study, train, warnings)
 }
 
-/// The same before anything was measured: train recordings need inputs only, and signals are what the nominal model
-/// shows. Noise is the sensors' accuracy, where the study says none a part of their range.
+/// The same before anything was measured: recordings have inputs only, and the signals are those of the nominal model.
+/// Noise is the sensors' accuracy, or a part of their range if the study states none.
 ///
 /// # Errors
 /// [`StudyError`].
@@ -97,29 +103,39 @@ pub fn planned<'a>(
     sources: &mut Sources,
 ) -> Result<DiagnosisStudy<'a>, StudyError> {
     let mut nominal = NominalModel::read(world, study)?;
+    // without signals, recordings need no columns for them
     let signals = std::mem::take(&mut nominal.bound.signals);
     let (train, warnings) = nominal.train(world, data, sources)?;
     nominal.bound.signals = signals;
     let train = nominal.shown(world, study, train)?;
     let mut question = nominal.question(world, study, train, warnings)?;
     let problem = &mut question.problem;
-    // nothing was recorded that could be wrong
+    // the columns are simulated, so they cannot have a wrong sign or unit
     problem.hypotheses.retain(|h| !h.is_recording_error());
     let accuracy = |(s, &scale): (&BoundSignal, &f64)| s.deviation(scale).unwrap_or(ACCURACY * scale);
     let floor = question.bound.signals.iter().zip(&problem.full_scale).map(accuracy);
+    // a floor of rounding, so that no weight is infinite
     problem.noise_floor = floor.zip(&problem.full_scale).map(|(n, f)| n.max(1e-9 * f.abs())).collect();
     Ok(question)
 }
 
-/// The nominal model of a study, and the study tied to it.
+/// The nominal model of a study, with the study bound to it.
 struct NominalModel {
+    /// Flat equations.
     flat: FlatModel,
+    /// Sorted equations, for values of parameters.
     dae: bramah_model::structure::Dae,
+    /// The study bound to the variables of the model.
     bound: BoundStudy,
+    /// Request that compiles the model.
     request: bramah_model::compile::Request,
 }
 
 impl NominalModel {
+    /// Compiles the model and binds the study.
+    ///
+    /// # Errors
+    /// [`StudyError`]; also for a model that samples.
     fn read(world: &dyn World, study: &Study) -> Result<Self, StudyError> {
         let request = study.request();
         let outcome = bramah_model::compile::sort(world, &request);
@@ -135,7 +151,7 @@ impl NominalModel {
         Ok(NominalModel { flat, dae, bound, request })
     }
 
-    /// The train recordings, with warnings.
+    /// Loads the train recordings; the second value has warnings.
     fn train(
         &self,
         world: &dyn World,
@@ -149,13 +165,14 @@ impl NominalModel {
         }
     }
 
-    /// Recordings of inputs with what the nominal model shows.
+    /// Recordings of inputs, completed by the signals of the nominal model.
     fn shown(
         &self,
         world: &dyn World,
         study: &Study,
         mut train: Vec<bramah_analysis::study::Recording>,
     ) -> Result<Vec<bramah_analysis::study::Recording>, StudyError> {
+        // scales do not matter here: nothing is fitted
         let signals = signals(&self.flat, &self.bound, &vec![1.0; self.bound.signals.len()]);
         let offer = offer(world, study, &signals, &[])?;
         let mut problem = DiagnosisProblem {
@@ -185,6 +202,7 @@ impl NominalModel {
         Ok(train)
     }
 
+    /// Builds the problem: places, hypotheses with fitted grids, tolerances, noise.
     fn question<'a>(
         self,
         world: &'a dyn World,
@@ -199,6 +217,7 @@ impl NominalModel {
         let offer = offer(world, study, &signals, &free(&tolerances))?;
         diagnostics.extend(offer.diagnostics);
         let mut disturbances = hypotheses::hypotheses(&offer.circuit, &offer.sources, &signals, &[]);
+        // sources with shared coefficients are not needed
         disturbances.retain(|d| d.attachments.len() == 1);
         let shown = bound.signals.iter().map(shown).collect();
         let files = train.iter().map(|r| r.file.clone()).collect();
@@ -220,6 +239,7 @@ impl NominalModel {
             train,
             travel: BTreeMap::new(),
         };
+        // the travel of the states sets their sizes in all later simulations, so it is found first
         problem.explore();
         shapes::fit(&mut problem);
         capacity::bound(&mut problem);
@@ -229,7 +249,7 @@ impl NominalModel {
     }
 }
 
-/// All hypotheses that a study leaves in, with warnings; recordings are not read. Sensors without a stated range count
+/// All hypotheses that a study allows, with warnings, without reading recordings. Sensors without a stated range count
 /// with a range of 1.
 ///
 /// # Errors
@@ -248,16 +268,22 @@ pub fn proposed(world: &dyn World, study: &Study) -> Result<(Vec<Hypothesis>, Ve
 
 /// What the network of a study's model offers.
 struct HypothesisSpace {
+    /// Topology of the model.
     circuit: CircuitTopology,
+    /// Folder with the user's own effects.
     folder: Option<PathBuf>,
+    /// All hypotheses that the study allows.
     hypotheses: Vec<Hypothesis>,
-    /// The whole catalogue.
+    /// The complete library.
     effects: Vec<Arc<EffectModel>>,
-    /// Disturbances, before they are attached.
+    /// Disturbance sources, not yet attached.
     sources: Vec<Arc<EffectModel>>,
+    /// Warnings about effects.
     diagnostics: Vec<Diagnostic>,
 }
 
+/// Reads topology and library, and puts the effects at their places.
+/// The study's choice of effects and its measured inputs already apply.
 fn offer(
     world: &dyn World,
     study: &Study,
@@ -277,6 +303,7 @@ fn offer(
     Ok(HypothesisSpace { circuit, folder, hypotheses, effects, sources, diagnostics: read.diagnostics })
 }
 
+/// The study's signals with their full scales.
 fn signals(flat: &FlatModel, bound: &BoundStudy, ranges: &[f64]) -> Vec<SensorSignal> {
     let name = |v: VarId| flat.variables[v.index()].name.clone();
     let signal =
@@ -284,7 +311,8 @@ fn signals(flat: &FlatModel, bound: &BoundStudy, ranges: &[f64]) -> Vec<SensorSi
     bound.signals.iter().zip(ranges).map(signal).collect()
 }
 
-/// The unit of a signal's column: differences are converted, so that the zero of a temperature does not matter.
+/// Display unit of a signal: that of its column. The factor is for differences, so that the zero of a temperature does
+/// not matter.
 fn shown(signal: &BoundSignal) -> SignalDisplayUnit {
     let own = SignalDisplayUnit { unit: signal.unit.clone(), factor: 1.0 };
     let Some(unit) = &signal.entry.unit else { return own };
@@ -295,6 +323,7 @@ fn shown(signal: &BoundSignal) -> SignalDisplayUnit {
     }
 }
 
+/// Parameters with tolerances as hypotheses need them.
 fn free(tolerances: &[ToleranceParameter]) -> Vec<UncertainParameter> {
     tolerances.iter().map(|t| UncertainParameter { name: t.name.clone(), nominal: t.nominal, sigma: t.sigma }).collect()
 }
@@ -313,12 +342,14 @@ impl DiagnosisStudy<'_> {
     }
 }
 
-/// Noise of a signal, never quite zero.
+/// Standard deviation of a signal's noise as estimated from its samples, SI; never quite zero.
+/// A constant or coarsely quantised signal shows none.
 fn floor(train: &[RecordingData], signal: usize, full_scale: f64) -> f64 {
     let samples: Vec<&[f64]> = train.iter().map(|r| &*r.signals[signal]).collect();
     noise::floor(&samples).max(1e-9 * full_scale.abs())
 }
 
+/// A function that gives the value of a parameter of the nominal model, SI.
 fn parameter_values(dae: bramah_model::structure::Dae) -> impl Fn(VarId) -> f64 {
     let system = lower(Arc::new(dae), &LoweringOptions::INTERPRETED);
     let mut values = system.layout.values();
@@ -326,7 +357,7 @@ fn parameter_values(dae: bramah_model::structure::Dae) -> impl Fn(VarId) -> f64 
     move |v| values[system.layout.var(v)]
 }
 
-/// Inputs in the order of the model; those that the study leaves out keep their start value.
+/// A recording in the order of the model's inputs. Inputs that the study leaves out keep their start value.
 fn recording(flat: &FlatModel, bound: &BoundStudy, r: bramah_analysis::study::Recording) -> RecordingData {
     let count = r.times.len();
     let mut inputs: Vec<Arc<[f64]>> = Vec::new();
@@ -357,6 +388,7 @@ fn stated(flat: &FlatModel, bound: &BoundStudy, value: &impl Fn(VarId) -> f64) -
             DataSheetTolerance::Exact => continue,
             DataSheetTolerance::Relative(part) => part * nominal.abs(),
             DataSheetTolerance::Absolute(value) => value,
+            // a free parameter has no prior, but needs a scale
             DataSheetTolerance::Free => nominal.abs().max(1e-12),
         };
         let t = tolerance(flat, p.variable, nominal, sigma, (p.min, p.max), false);
@@ -365,13 +397,14 @@ fn stated(flat: &FlatModel, bound: &BoundStudy, value: &impl Fn(VarId) -> f64) -
     all
 }
 
-/// Those of the study; where it states none, assumed ones of all parameters on which others do not depend.
+/// Tolerances of the study. If it states none: [`ASSUMED`] for all parameters with a unit that do not depend on others.
 fn tolerances(flat: &FlatModel, bound: &BoundStudy, value: &impl Fn(VarId) -> f64) -> Vec<ToleranceParameter> {
     if !bound.parameters.is_empty() {
         return stated(flat, bound, value);
     }
     let mut all = Vec::new();
     for (v, variable) in (0..).map(VarId).zip(&flat.variables) {
+        // a parameter without a unit gets no assumed tolerance
         let physical = variable.unit.as_deref().is_some_and(|u| !u.is_empty() && u != "1");
         if variable.hidden
             || !physical
@@ -389,6 +422,7 @@ fn tolerances(flat: &FlatModel, bound: &BoundStudy, value: &impl Fn(VarId) -> f6
     all
 }
 
+/// One parameter with its bounds: those of the study, else those of the model.
 fn tolerance(
     flat: &FlatModel,
     v: VarId,
@@ -399,7 +433,7 @@ fn tolerance(
 ) -> ToleranceParameter {
     let variable = &flat.variables[v.index()];
     let number = |e: Option<bramah_expr::ExprId>| e.and_then(|e| flat.exprs.as_num(e)).filter(|b| b.is_finite());
-    // a parameter that must be positive stays so: a hundredth of its value is the least
+    // a parameter that must not be negative stays positive: its least value is a hundredth of the nominal one
     let declared = number(variable.min).map(|m| if m == 0.0 && nominal > 0.0 { 0.01 * nominal } else { m });
     let least = if nominal > 0.0 { Some(0.01 * nominal) } else { None };
     ToleranceParameter {

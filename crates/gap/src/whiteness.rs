@@ -1,37 +1,40 @@
-//! What a model leaves, signal by signal: how strong it is beside the sensor's noise, whether neighbours have anything in
-//! common, and at which frequencies it lies. A complete model leaves white noise of unit power.
+//! Whiteness of residuals, signal by signal: their power relative to the sensor's noise, the correlation of neighbours,
+//! and their spectrum. A complete model leaves white noise of unit power.
+//!
+//! Enters: residuals, recordings and noise. Leaves: a [`Whiteness`] per signal. Called by `report`.
 
 use super::data::RecordingData;
 use super::estimate::candidate::RecordingResiduals;
 use super::lines::goertzel;
 use std::f64::consts::PI;
 
-/// Samples of a stretch of which one spectrum is made, and the fewest that make one.
+/// Most samples in a stretch of which one spectrum is made.
 const STRETCH: usize = 256;
+/// Fewest samples of which a spectrum is made.
 const FEWEST: usize = 32;
-/// Steps that differ by less than this part are the same.
+/// Relative difference up to which sampling steps are the same.
 const SAME_STEP: f64 = 0.01;
 
-/// The errors of one signal, in the standard deviation of its noise.
+/// Residuals of one signal, in standard deviations of its noise.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Whiteness {
-    /// Mean square: 1 where they are as large as the noise.
+    /// Mean square; 1 if they are as large as the noise.
     pub power: f64,
-    /// Correlation of a sample with the next.
+    /// Correlation of a sample with the next one.
     pub neighbours: f64,
-    /// What that is at most in 95 % of white noise of as many samples.
+    /// Absolute correlation that white noise of as many samples stays below in 95 % of cases.
     pub limit: f64,
-    /// Frequencies, Hz; empty where recordings are too short.
+    /// Frequencies in Hz; empty if the recordings are too short.
     pub frequencies: Vec<f64>,
-    /// Power density there, in that of white noise of unit power.
+    /// Power density at these frequencies, relative to white noise of unit power.
     pub density: Vec<f64>,
 }
 
-/// Of all signals, from the errors that a model leaves of recordings and the noise of the sensors.
+/// Whiteness of all signals from the residuals of a model and the noise of the sensors, SI.
 pub fn whiteness(errors: &[RecordingResiduals], recordings: &[RecordingData], noise: &[f64]) -> Vec<Whiteness> {
     let steps: Vec<f64> = recordings.iter().map(|r| r.duration() / (r.len().max(2) - 1) as f64).collect();
     let one = |(signal, noise): (usize, &f64)| {
-        // where nothing was measured, nothing is left
+        // a missing sample counts as 0, so that neighbours stay neighbours
         let known = |e: &f64| if e.is_finite() { e / noise } else { 0.0 };
         let series: Vec<Vec<f64>> = errors.iter().map(|e| e[signal].iter().map(known).collect()).collect();
         of(&series, &steps)
@@ -39,7 +42,7 @@ pub fn whiteness(errors: &[RecordingResiduals], recordings: &[RecordingData], no
     noise.iter().enumerate().map(one).collect()
 }
 
-/// Of one signal, with a step for each series; there is no error of exactly 0 but where no sample is.
+/// Whiteness of one signal; `steps`: sampling step of each series, s. A value of exactly 0 stands for a missing sample.
 fn of(series: &[Vec<f64>], steps: &[f64]) -> Whiteness {
     let count = series.iter().flatten().filter(|v| **v != 0.0).count().max(1) as f64;
     let square: f64 = series.iter().flatten().map(|v| v * v).sum();
@@ -49,8 +52,8 @@ fn of(series: &[Vec<f64>], steps: &[f64]) -> Whiteness {
     Whiteness { power: square / count, neighbours, limit: 1.96 / count.sqrt(), frequencies, density }
 }
 
-/// The mean of the spectra of stretches that overlap by half, each in a Hann window (Welch, IEEE Transactions on Audio and
-/// Electroacoustics 15, 1967). Recordings with another step than the first are left out.
+/// Frequencies and power density: mean spectrum of stretches that overlap by half, each in a Hann window (Welch, IEEE
+/// Transactions on Audio and Electroacoustics 15, 1967). Recordings with another step than the first are left out.
 fn spectrum(series: &[Vec<f64>], steps: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let Some(&step) = steps.first().filter(|s| **s > 0.0) else { return Default::default() };
     let alike = |(s, own): (&Vec<f64>, &f64)| ((own / step - 1.0).abs() < SAME_STEP).then(|| s.clone());
@@ -61,6 +64,7 @@ fn spectrum(series: &[Vec<f64>], steps: &[f64]) -> (Vec<f64>, Vec<f64>) {
     }
     let window: Vec<f64> =
         (0..length).map(|k| 0.5 - 0.5 * (2.0 * PI * (k as f64 + 0.5) / length as f64).cos()).collect();
+    // the power of the window, so that white noise keeps its power
     let size: f64 = window.iter().map(|w| w * w).sum();
     let mut density = vec![0.0; length / 2];
     let mut stretches = 0;

@@ -1,4 +1,7 @@
-//! The verdict in words, one screen of them.
+//! The verdict as text for people, about one screen.
+//!
+//! Enters: a [`Verdict`]. Leaves: text for the command line; `report` uses its parts for the page.
+//! Figures have the unit of the study's column, and errors are given as RMS with their share of the signal's range.
 
 use super::policy::SEEN;
 use super::verdict::{
@@ -7,14 +10,16 @@ use super::verdict::{
 };
 use std::fmt::Write;
 
-/// What the diagnosis found, for people: findings, the gap as a table, what is left.
+/// The text: findings, a table of the gap, and what is left.
 pub fn words(v: &Verdict) -> String {
     [findings(v), gaps(v), rest(v)].concat()
 }
 
-/// Recording errors and effects, or what is said where there are none.
+/// Errors of recordings and effects, or what is said where there are none.
+/// Errors of one file share a sentence: all but one of them are alternatives.
 pub(super) fn findings(v: &Verdict) -> String {
     let mut text = headline(v);
+    // errors that the data cannot tell apart stand in one sentence
     for in_file in v.recording.chunk_by(|a, b| a.file == b.file) {
         let what = |r: &RecordingError| match r.error {
             "sign" => format!("`{}` has the wrong sign", r.signal),
@@ -33,7 +38,8 @@ pub(super) fn findings(v: &Verdict) -> String {
     text
 }
 
-/// What is missing, how much it is and what it changes, in a sentence or two.
+/// What is missing and how far the error falls with it, in one or two sentences; empty without effects.
+/// The signal named is the one whose error falls most.
 fn headline(v: &Verdict) -> String {
     if v.effects.is_empty() {
         return String::new();
@@ -42,7 +48,8 @@ fn headline(v: &Verdict) -> String {
     format!("{}{}\n", lacking(&v.effects), fall(v, with).unwrap_or_default())
 }
 
-/// What the model lacks; which of its parameters are off.
+/// Sentences on what the model lacks and which parameters are off.
+/// Effects are joined in one sentence; each parameter gets its own.
 fn lacking(effects: &[VerdictEffect]) -> String {
     let (off, missing): (Vec<&VerdictEffect>, Vec<&VerdictEffect>) =
         effects.iter().partition(|e| e.family == "parameter");
@@ -57,14 +64,16 @@ fn lacking(effects: &[VerdictEffect]) -> String {
     missing.into_iter().chain(off).collect::<Vec<_>>().join(" ")
 }
 
-/// The places of an effect.
+/// Places of an effect in words, joined by "and".
 fn places(e: &VerdictEffect) -> String {
     e.places.iter().map(|p| format!("`{}`", p.place)).collect::<Vec<_>>().join(" and ")
 }
 
-/// The error that falls most, in parts of its signal's range.
+/// Sentence on the signal whose error falls most in parts of its range; `None` if none falls.
+/// `with`: pronoun for the effects named before.
 fn fall(v: &Verdict, with: &str) -> Option<String> {
     let fall = |g: &SignalGap| Some(g.of_range.nominal? - g.of_range.effects?);
+    // a signal whose simulation stops early has no figure and is left out
     let all = v.gap.held.signals.iter().filter_map(|(name, g)| Some((name, g, fall(g)?)));
     let (name, g, by) = all.max_by(|a, b| a.2.total_cmp(&b.2))?;
     let (from, to) = (significant(g.rms.nominal?), quantity(g.rms.effects?, &g.unit));
@@ -72,7 +81,8 @@ fn fall(v: &Verdict, with: &str) -> Option<String> {
         .then(|| format!(" With {with} the error of `{name}` falls from {from} to {to} (RMS on held recordings)."))
 }
 
-/// What is left, and what to do about it.
+/// What is left, and what to do about it: open gaps, shapes, parameters off their data sheet, assumptions, and the next
+/// experiment.
 pub(super) fn rest(v: &Verdict) -> String {
     let mut text = String::new();
     if v.open.is_empty() {
@@ -89,6 +99,7 @@ pub(super) fn rest(v: &Verdict) -> String {
             percent(t.closes)
         );
     }
+    // smaller deviations are what tolerances are for
     let far = |d: &ParameterDrift| d.tolerances.filter(|t| t.abs() >= 2.0);
     for (d, tolerances) in v.drifts.iter().filter_map(|d| Some((d, far(d)?))) {
         let (name, value, nominal) = (&d.parameter, number(d.value), number(d.nominal));
@@ -103,7 +114,7 @@ pub(super) fn rest(v: &Verdict) -> String {
     text
 }
 
-/// What is said where no effect is named.
+/// What is said where no effect is named, by the word of the verdict.
 fn found_nothing(v: &Verdict) -> String {
     let named = |p: &PlaceEvidence| format!("`{}` ({})", p.place, p.kind);
     match v.verdict {
@@ -121,7 +132,8 @@ fn found_nothing(v: &Verdict) -> String {
     }
 }
 
-/// How much stays open, where, and whether it repeats.
+/// How large the open gaps are, at which signals, and in how many recordings.
+/// `place`: the place that explains most, in words.
 fn open(v: &Verdict, place: Option<String>) -> String {
     let one = |o: &OpenGap| {
         let size = match (o.rms, o.of_range) {
@@ -136,6 +148,7 @@ fn open(v: &Verdict, place: Option<String>) -> String {
     };
     let signals: Vec<String> = v.open.iter().map(one).collect();
     let most = place.map_or(String::new(), |p| format!(" The place that explains most of it is {p}."));
+    // the verdict is `gap_open` because of the parameters alone
     if signals.is_empty() {
         let bent = "The model follows the recordings only with parameters beyond three tolerances: they are wrong, or something";
         return format!("{bent} is missing that no known effect names.{most}\n");
@@ -143,7 +156,7 @@ fn open(v: &Verdict, place: Option<String>) -> String {
     format!("The gap stays open at {}. No known effect can be named for it.{most}\n", signals.join("; "))
 }
 
-/// Raw gaps, a line a signal.
+/// Table of the gaps on held recordings, one line per signal, in columns of equal width; empty without signals.
 fn gaps(v: &Verdict) -> String {
     let signals = &v.gap.held.signals;
     if signals.is_empty() {
@@ -152,6 +165,7 @@ fn gaps(v: &Verdict) -> String {
     let head = ["", "nominal", "within tolerances", "with effects", "sensor noise"].map(String::from);
     let rows: Vec<[String; 5]> =
         std::iter::once(head).chain(signals.iter().map(|(name, g)| gap_row(name, g))).collect();
+    // counted in characters, since a unit may hold letters of several bytes
     let width = |i: usize| rows.iter().map(|r| r[i].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..5).map(width).collect();
     let line = |r: &[String; 5]| {
@@ -164,7 +178,8 @@ fn gaps(v: &Verdict) -> String {
     )
 }
 
-/// A signal with its unit, what three models leave of it, and its noise.
+/// Cells of a signal: name with unit, gap of the three models, and noise. A gap is an RMS with its share of the range.
+/// A model whose simulation stops early gets words instead of numbers.
 pub(super) fn gap_row(name: &str, g: &SignalGap) -> [String; 5] {
     let cell = |rms: OptionalNumber, share: OptionalNumber| match (rms, share) {
         (Some(rms), Some(share)) => format!("{} ({})", significant(rms), percent(share)),
@@ -179,15 +194,18 @@ pub(super) fn gap_row(name: &str, g: &SignalGap) -> [String; 5] {
     ]
 }
 
-/// Three significant digits.
+/// A number with three significant digits, for errors and flows.
 fn significant(v: f64) -> String {
     bramah_results::number::rounded(v, 3)
 }
 
+/// A number with three significant digits and its unit.
 fn quantity(v: f64, unit: &str) -> String {
     format!("{} {unit}", significant(v)).trim_end().to_string()
 }
 
+/// The paragraph on the i-th of `count` effects: class, place, parameters, evidence, what it closes, and what the data
+/// cannot tell from it.
 fn effect(i: usize, e: &VerdictEffect, count: usize) -> String {
     let values: Vec<String> = e.parameters.iter().map(|(n, p)| format!("{n} = {}", estimate(p, "+-"))).collect();
     let mut text = format!(
@@ -220,7 +238,8 @@ fn effect(i: usize, e: &VerdictEffect, count: usize) -> String {
     text
 }
 
-/// A value with its deviation and unit; one that was not free has none.
+/// A value with its deviation and unit, and `sign` between them; `(fixed)` if it was not free.
+/// It is shown in the unit of the study's column where that is known.
 pub(super) fn estimate(p: &ParameterEstimate, sign: &str) -> String {
     let (factor, unit) = p.shown.as_ref().map_or((1.0, &p.unit), |s| (s.factor, &s.unit));
     let deviation = if p.std > 0.0 { format!(" {sign} {}", number(factor * p.std)) } else { String::new() };
@@ -228,22 +247,24 @@ pub(super) fn estimate(p: &ParameterEstimate, sign: &str) -> String {
     format!("{}{deviation} {unit}", number(factor * p.value)).trim_end().to_string() + fixed
 }
 
-/// How far an alternative is from what is named, in words. One that is ahead has more parameters or states, or cuts a
-/// connection.
+/// How far an alternative is from the named effect, in nats. One that is ahead has more parameters or states, or cuts a
+/// connection; the named effect is simpler.
 pub(super) fn distance(behind: f64) -> String {
     if behind < 0.0 { format!("{:.1} nats ahead, less simple", -behind) } else { format!("{behind:.1} nats behind") }
 }
 
-/// Without the capital at its start.
+/// Text with a small first letter, for descriptions inside a sentence.
 fn lower(text: &str) -> String {
     let mut characters = text.chars();
     characters.next().map_or_else(String::new, |c| c.to_lowercase().collect::<String>() + characters.as_str())
 }
 
+/// A number with four decimals, or in scientific notation if it is very small or large. For values of parameters.
 pub(super) fn number(v: f64) -> String {
     if v == 0.0 || (1e-3..1e5).contains(&v.abs()) { format!("{v:.4}") } else { format!("{v:.3e}") }
 }
 
+/// A share in per cent with one decimal.
 pub(super) fn percent(v: f64) -> String {
     format!("{:.1} %", 100.0 * v)
 }

@@ -127,6 +127,21 @@ impl<W: Write> CsvWriter<W> {
     }
 }
 
+impl<W: Write + Send> crate::formats::ResultWriter for CsvWriter<W> {
+    fn rows(&mut self, rows: &[f64]) -> io::Result<()> {
+        let mut rows = rows.chunks_exact(self.kinds.len() + 1);
+        rows.try_for_each(|row| self.row(row[0], row[1..].iter().copied()))
+    }
+
+    fn flush(&mut self) -> io::Result<u64> {
+        CsvWriter::flush(self)
+    }
+
+    fn finish(self: Box<Self>) -> io::Result<()> {
+        CsvWriter::finish(*self).map(drop)
+    }
+}
+
 /// About how many bytes a row of these signals takes, to announce large files.
 pub fn csv_bytes_per_row(signals: &[Signal]) -> u64 {
     let cell = |kind: &Kind| match kind {

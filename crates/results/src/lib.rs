@@ -4,6 +4,7 @@ mod cells;
 pub mod compare;
 mod csv;
 mod delay;
+pub mod formats;
 pub mod glob;
 pub mod mat;
 pub mod number;

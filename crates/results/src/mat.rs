@@ -44,6 +44,34 @@ pub fn write(mut out: impl Write, trajectory: &Trajectory) -> io::Result<()> {
     out.flush()
 }
 
+/// Takes rows and writes them at the end: a column stands in one piece, and its length at its head.
+pub struct MatWriter<W: Write> {
+    out: W,
+    rows: Trajectory,
+}
+
+impl<W: Write> MatWriter<W> {
+    /// Writes nothing yet.
+    pub fn new(out: W, signals: &[Signal]) -> Self {
+        MatWriter { out, rows: Trajectory::new(signals.to_vec()) }
+    }
+}
+
+impl<W: Write + Send> crate::formats::ResultWriter for MatWriter<W> {
+    fn rows(&mut self, rows: &[f64]) -> io::Result<()> {
+        rows.chunks_exact(self.rows.columns.len() + 1).for_each(|row| self.rows.push(row[0], &row[1..]));
+        Ok(())
+    }
+
+    fn flush(&mut self) -> io::Result<u64> {
+        Ok(0)
+    }
+
+    fn finish(self: Box<Self>) -> io::Result<()> {
+        write(self.out, &self.rows)
+    }
+}
+
 /// Writes one matrix of numbers; `values` by columns. Several after each other make a file that MATLAB and SciPy read.
 ///
 /// # Errors

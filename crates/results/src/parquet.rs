@@ -86,6 +86,21 @@ mod writer {
         }
     }
 
+    impl<W: Write + Send> crate::formats::ResultWriter for ParquetWriter<W> {
+        fn rows(&mut self, rows: &[f64]) -> io::Result<()> {
+            ParquetWriter::rows(self, rows)
+        }
+
+        fn flush(&mut self) -> io::Result<u64> {
+            self.file.inner_mut().flush()?;
+            Ok(0)
+        }
+
+        fn finish(self: Box<Self>) -> io::Result<()> {
+            ParquetWriter::finish(*self)
+        }
+    }
+
     /// Writes a table whose columns are at hand.
     ///
     /// # Errors

@@ -1,32 +1,35 @@
-//! Algebraic unknowns: how closely they are watched, and their values where no step ends.
+//! Algebraic unknowns: their weight in the error test, and their values where no step ends.
 //!
-//! What IDA's error test measures of an algebraic unknown is not its error. Predicted is the trajectory of its old values,
-//! which already hold the errors of the states behind them; at order one and with steps of equal length these cancel,
-//! after any change of the step they do not, and the integrator is caught at tiny steps. The error of an algebraic
-//! unknown is that of the states times its sensitivity to them, as if it were eliminated. So the test holds it loosely,
-//! close enough that steps do not pass over events, and rows are made here: states by interpolation, the rest and the
-//! derivatives by Newton's method.
+//! What IDA's error test measures of an algebraic unknown is not its error. The predictor extrapolates old values,
+//! which already contain the errors of the states behind them. With order 1 and equal steps these cancel; after a
+//! change of the step they do not, and the integrator stays at tiny steps. The real error of an algebraic unknown is
+//! that of the states times its sensitivity to them, as if it were eliminated. So the test weighs it loosely, but
+//! tightly enough that steps do not pass over events. Rows take interpolated states, and [`AlgebraicSolver`] computes
+//! all other unknowns and the derivatives from them by Newton's method.
 
 use super::ida::{DaeEquations, EvaluationStatus};
 use super::linear::Lu;
 use super::model::IntegrationModel;
 use crate::lower::{ColumnRole, ExecutableSystem};
 
-/// Weight of the derivatives in the matrix: so large that states do not move.
+/// The factor cj in the matrix: so large that states do not move, and their derivatives are solved for instead.
 pub const HOLD_STATES: f64 = 1e60;
-/// The last correction, in tolerances.
+/// The iteration ends when the correction is below this, in tolerances.
 const ENOUGH: f64 = 0.1;
-/// A rate that is not believed to be smaller.
+/// Lower limit of the estimated convergence rate.
 const LEAST_RATE: f64 = 1e-3;
 /// A correction that is a larger part of the one before asks for a new matrix.
 const SLOW: f64 = 0.1;
+/// Corrections at most.
 const CORRECTIONS: u32 = 6;
 
-/// How much looser algebraic unknowns are held than states. With 100, diodes at a sine are missed.
+/// How much looser algebraic unknowns are tested than states. With 100, switching diodes on a sine are missed.
 const LOOSE: f64 = 10.0;
 
-/// The part of each unknown in the error test: as if states and algebraic unknowns were measured apart, each by the
-/// root of their mean square, so that the number of the ones does not change what the others may do.
+/// The weight of each unknown in the error test.
+///
+/// States and algebraic unknowns are measured as if separately, each by the root of their mean square. So the number of
+/// the ones does not change how accurate the others are.
 pub fn shares(system: &ExecutableSystem) -> Vec<f64> {
     let count = |role| system.columns.iter().filter(|c| c.role == role).count() as f64;
     let (n, states) = (system.columns.len() as f64, count(ColumnRole::State) + count(ColumnRole::Following));
@@ -40,60 +43,71 @@ pub fn shares(system: &ExecutableSystem) -> Vec<f64> {
     system.columns.iter().map(|c| share(c.role)).collect()
 }
 
-/// Factors of a Jacobian with [`HOLD_STATES`]; `solved` is false for each unknown whose derivative is sought instead: beside
-/// that, what an equation has of the unknown itself is no pivot.
+/// A factorization for the Jacobian with cj = [`HOLD_STATES`].
+///
+/// `solved` is false for each unknown whose derivative is sought instead. There the entry of the unknown itself must
+/// not become a pivot, so its column scale is divided by `HOLD_STATES`.
 pub fn holding(system: &ExecutableSystem, nominal: &[f64], solved: &[bool]) -> Lu {
     let size = |(n, &solved): (&f64, &bool)| if solved { *n } else { n / HOLD_STATES };
     Lu::new(&system.pattern, &nominal.iter().zip(solved).map(size).collect::<Vec<f64>>())
 }
 
-/// Work done.
+/// Work done by the solver.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EvaluationCounts {
-    /// Evaluations of the equations.
+    /// Evaluations of the residual.
     pub residuals: u64,
     /// Evaluations of the Jacobian.
     pub jacobians: u64,
 }
 
-/// The solver, with the values it last found.
+/// Solves algebraic unknowns and derivatives for given states, and holds the last solution.
 #[derive(Debug)]
 pub struct AlgebraicSolver {
-    /// False for each unknown that is a state; empty when all are, or none is.
+    /// For each column whether the unknown itself is solved for (false: its derivative). Empty when nothing must be
+    /// solved.
     solved: Vec<bool>,
-    /// Size of each unknown times the tolerance.
+    /// Absolute tolerance of each unknown.
     absolute: Vec<f64>,
+    /// Relative tolerance.
     relative: f64,
+    /// Factors of the Jacobian at `HOLD_STATES`.
     lu: Lu,
+    /// Entries of that Jacobian.
     val: Vec<f64>,
+    /// Whether `lu` is valid.
     factored: bool,
-    /// By what part a correction was smaller than the one before, lately.
+    /// Recent ratio of a correction to the one before.
     rate: f64,
+    /// The present correction.
     step: Vec<f64>,
+    /// Unknowns of the last solution.
     y: Vec<f64>,
+    /// Derivatives of the last solution.
     yp: Vec<f64>,
     /// Work done so far.
     pub effort: EvaluationCounts,
 }
 
 impl AlgebraicSolver {
-    /// For the unknowns of a system with these nominal values.
+    /// A solver for a system with these nominal values. It does nothing where there are no algebraic unknowns.
     pub fn new(system: &ExecutableSystem, nominal: &[f64], tolerance: f64) -> Self {
         // states that follow from a quantity are interpolated like others where nothing else has to be solved
         let needed = system.columns.iter().any(|c| c.role == ColumnRole::Algebraic);
         Self::where_needed(system, nominal, tolerance, needed)
     }
 
-    /// Whether what the equations leave open may keep its value ([`Lu::may_keep`]).
+    /// Sets whether unknowns that the equations leave open may keep their value ([`Lu::may_keep`]).
     pub fn may_keep(&mut self, allowed: bool) {
         self.lu.may_keep(allowed);
     }
 
-    /// The same, also where there are derivatives only.
+    /// As [`AlgebraicSolver::new`], but it also solves where only derivatives are unknown.
     pub fn with_rates(system: &ExecutableSystem, nominal: &[f64], tolerance: f64) -> Self {
         Self::where_needed(system, nominal, tolerance, !system.columns.is_empty())
     }
 
+    /// A solver that solves if `needed`.
     fn where_needed(system: &ExecutableSystem, nominal: &[f64], tolerance: f64, needed: bool) -> Self {
         let solved: Vec<bool> = system.columns.iter().map(|c| !c.is_differential()).collect();
         AlgebraicSolver {
@@ -111,7 +125,7 @@ impl AlgebraicSolver {
         }
     }
 
-    /// Unknowns and derivatives at `t`, with the states of `y`; as they were given when they cannot be solved.
+    /// Unknowns and derivatives at `t`, with the states of `y`. The given ones where they cannot be solved.
     pub fn solve<'s>(
         &'s mut self,
         model: &mut IntegrationModel<'_>,
@@ -136,7 +150,7 @@ impl AlgebraicSolver {
         self.iterate(model, t, y, yp).then_some((&self.y, &self.yp))
     }
 
-    /// With the matrix at hand, or else with a new one from the values given.
+    /// Solves with the stored matrix, and with a new one if that fails; false when both fail.
     fn iterate(&mut self, model: &mut IntegrationModel<'_>, t: f64, y: &[f64], yp: &[f64]) -> bool {
         self.begin(y, yp);
         if self.factored && self.converge(model, t, false) {
@@ -146,6 +160,7 @@ impl AlgebraicSolver {
         self.factor(model, t) && self.converge(model, t, true)
     }
 
+    /// Starts from the given values.
     fn begin(&mut self, y: &[f64], yp: &[f64]) {
         self.y.clear();
         self.y.extend_from_slice(y);
@@ -153,6 +168,9 @@ impl AlgebraicSolver {
         self.yp.extend_from_slice(yp);
     }
 
+    /// Corrects until the correction is small enough; false when it does not converge.
+    ///
+    /// `fresh` allows a new matrix during the iteration.
     fn converge(&mut self, model: &mut IntegrationModel<'_>, t: f64, fresh: bool) -> bool {
         let mut last = f64::INFINITY;
         for _ in 0..CORRECTIONS {
@@ -172,6 +190,7 @@ impl AlgebraicSolver {
         last <= 1.0
     }
 
+    /// Computes and factorizes the Jacobian; false when it is singular or not finite.
     fn factor(&mut self, model: &mut IntegrationModel<'_>, t: f64) -> bool {
         self.effort.jacobians += 1;
         let done = model.jacobian(t, HOLD_STATES, &self.y, &self.yp, &mut self.val) == EvaluationStatus::Done;
@@ -179,7 +198,8 @@ impl AlgebraicSolver {
         self.factored
     }
 
-    /// One correction; the largest of an algebraic unknown, in tolerances. None when it is not finite.
+    /// Makes one correction. Returns its largest entry of an algebraic unknown in tolerances; `None` when it is not
+    /// finite.
     fn correct(&mut self, model: &mut IntegrationModel<'_>, t: f64) -> Option<f64> {
         self.effort.residuals += 1;
         if model.residual(t, &self.y, &self.yp, &mut self.step) == EvaluationStatus::Retry
@@ -193,6 +213,7 @@ impl AlgebraicSolver {
                 self.y[i] -= self.step[i];
                 largest = largest.max(self.step[i].abs() / (self.relative * self.y[i].abs() + self.absolute[i]));
             } else {
+                // the column of this unknown was multiplied by cj, so its correction is that of the derivative
                 self.yp[i] -= HOLD_STATES * self.step[i];
             }
         }

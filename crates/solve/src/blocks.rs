@@ -1,5 +1,9 @@
-//! Running the sorted blocks of the event or initial system: assignments, algebraic loops, loops through discrete
-//! equations.
+//! Execution of the sorted blocks of the event system or the initial system.
+//!
+//! `events` and `initialize` call [`BlockWorkspace::run`] with the array of values. Assignments run their programs,
+//! algebraic loops are solved by `newton`. Mixed loops (MLS appendix C: discrete and continuous equations that depend
+//! on each other) are solved by a search over their discrete values: a fixed-point iteration first, then single
+//! changes, then combinations of modes.
 
 use super::modes::CrossingModes;
 use super::newton::{Newton, NewtonFailure, NewtonFailureReason, VariableScales};
@@ -8,71 +12,81 @@ use crate::lower::{AssignCode, AssignTarget, BlockCode, ExecutableSystem, LoopCo
 use bramah_expr::VarId;
 use bramah_model::structure::Unknown;
 
-/// Passes through a mixed loop before single changes are tried, and again before combinations are.
+/// Passes of a fixed-point iteration through a mixed loop.
 const PASSES: usize = 40;
-/// Modes of a mixed loop whose combinations are tried at most.
+/// Number of modes of a mixed loop up to which all combinations are tried.
 const COMBINED: usize = 10;
 
 /// Why the blocks could not be solved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BlockFailure {
-    /// An algebraic loop.
+    /// An algebraic loop has no solution.
     Loop(Box<NewtonFailure>),
-    /// An explicit value that is not finite.
+    /// An explicit value is not finite.
     NonFinite(AssignTarget),
-    /// Discrete values of a mixed loop that contradict each other whatever is tried; and what the equations did not
-    /// determine with some of these values.
+    /// No discrete values of a mixed loop are consistent.
+    ///
+    /// Holds the discrete variables, and the unknown that the equations left undetermined with some of their values.
     Mixed(Vec<VarId>, Option<Unknown>),
 }
 
-/// What all blocks share.
+/// What all blocks need to run.
 pub struct BlockContext<'a> {
-    /// The model.
+    /// The lowered model.
     pub system: &'a ExecutableSystem,
-    /// Sizes and bounds.
+    /// Sizes and bounds of all variables.
     pub scales: &'a VariableScales,
-    /// Corrections of modes.
+    /// Corrections of modes that have just crossed.
     pub modes: &'a CrossingModes,
 }
 
-/// Work space for a list of blocks, allocated once.
+/// Workspace of a list of blocks, allocated once.
 #[derive(Debug, Default)]
 pub struct BlockWorkspace {
+    /// The workspace of each block, in the order of the blocks.
     work: Vec<BlockWork>,
 }
 
+/// The workspace of one block, by its kind.
 #[derive(Debug)]
 enum BlockWork {
+    /// The modes among the targets.
     Assign(ModeCorrections),
+    /// The Newton solver.
     Loop(Box<Newton>),
+    /// The workspace of the mixed loop.
     Mixed(Box<MixedWork>),
 }
 
 /// Slot and crossing of each mode that an assignment program computes.
 type ModeCorrections = Vec<(usize, u32)>;
 
+/// Workspace of a mixed loop.
 #[derive(Debug)]
 struct MixedWork {
+    /// Workspace of its continuous blocks.
     continuous: Vec<BlockWork>,
+    /// For each discrete program its modes.
     corrections: Vec<ModeCorrections>,
     /// Slots of all discrete targets, in order.
     slots: Vec<usize>,
+    /// The variables of these slots.
     targets: Vec<VarId>,
-    /// Positions in `slots` that are modes.
+    /// Indices in `slots` that are modes of crossings.
     modes: Vec<usize>,
-    /// What a singular matrix left undetermined in a search.
+    /// The unknown that a singular matrix left undetermined during the search.
     undetermined: Option<Unknown>,
-    /// Whether the last solution left it as it was.
+    /// Whether the last solution kept the value of that unknown.
     keeps: bool,
 }
 
 impl BlockWorkspace {
-    /// Work space for these blocks.
+    /// Allocates the workspace of these blocks.
     pub fn new(code: &[BlockCode], scales: &VariableScales, modes: &CrossingModes) -> Self {
         BlockWorkspace { work: code.iter().map(|b| BlockWork::new(b, scales, modes)).collect() }
     }
 
-    /// What the equations left open in the last solution, and what switched there.
+    /// The unknown that the equations left open in the last solution, and the discrete variables of its loop.
     pub fn kept(&self) -> Option<(&[VarId], Unknown)> {
         self.work.iter().find_map(|work| match work {
             BlockWork::Mixed(mixed) if mixed.keeps => Some((mixed.targets.as_slice(), mixed.undetermined?)),
@@ -80,7 +94,7 @@ impl BlockWorkspace {
         })
     }
 
-    /// Whether loops may end at another root than that at hand ([`Newton::may_jump`]).
+    /// Sets whether loops may end at another root than the present one ([`Newton::may_jump`]).
     pub fn may_jump(&mut self, allowed: bool) {
         self.work.iter_mut().for_each(|work| work.may_jump(allowed));
     }
@@ -103,7 +117,7 @@ impl BlockWorkspace {
         code.iter().zip(&mut self.work).try_for_each(|(code, work)| work.run(code, setting, values))
     }
 
-    /// Solves those that are stale, in order.
+    /// Solves those blocks that are stale, in order.
     ///
     /// # Errors
     /// The first block that fails.
@@ -125,6 +139,7 @@ impl BlockWorkspace {
 }
 
 impl BlockWork {
+    /// Allocates the workspace of one block.
     fn new(code: &BlockCode, scales: &VariableScales, modes: &CrossingModes) -> Self {
         match code {
             BlockCode::Assign(assign) => BlockWork::Assign(corrections(assign, modes)),
@@ -133,6 +148,7 @@ impl BlockWork {
         }
     }
 
+    /// As [`BlockWorkspace::may_jump`].
     fn may_jump(&mut self, allowed: bool) {
         match self {
             BlockWork::Assign(_) => {}
@@ -141,6 +157,7 @@ impl BlockWork {
         }
     }
 
+    /// As [`BlockWorkspace::searched`].
     fn searched(&self) -> bool {
         match self {
             BlockWork::Assign(_) => false,
@@ -149,6 +166,7 @@ impl BlockWork {
         }
     }
 
+    /// Solves one block.
     fn run(&mut self, code: &BlockCode, setting: &BlockContext<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
         match (self, code) {
             (BlockWork::Assign(corrections), BlockCode::Assign(assign)) => {
@@ -162,6 +180,7 @@ impl BlockWork {
     }
 }
 
+/// Solves an algebraic loop and checks its inner variables.
 fn run_loop(
     newton: &mut Newton,
     code: &LoopCode,
@@ -172,6 +191,7 @@ fn run_loop(
     check_finite(&code.inner, values)
 }
 
+/// `Err` with the first target whose value is not finite.
 fn check_finite(targets: &[AssignTarget], values: &[f64]) -> Result<(), BlockFailure> {
     match targets.iter().find(|t| !values[t.slot].is_finite()) {
         None => Ok(()),
@@ -179,6 +199,7 @@ fn check_finite(targets: &[AssignTarget], values: &[f64]) -> Result<(), BlockFai
     }
 }
 
+/// The modes among the targets of an assignment program.
 fn corrections(code: &AssignCode, modes: &CrossingModes) -> ModeCorrections {
     code.targets
         .iter()
@@ -189,6 +210,7 @@ fn corrections(code: &AssignCode, modes: &CrossingModes) -> ModeCorrections {
         .collect()
 }
 
+/// Runs an assignment program and corrects its modes.
 fn run_assign(code: &AssignCode, corrections: &ModeCorrections, setting: &BlockContext<'_>, values: &mut [f64]) {
     code.program.run(values);
     for &(slot, crossing) in corrections {
@@ -197,6 +219,7 @@ fn run_assign(code: &AssignCode, corrections: &ModeCorrections, setting: &BlockC
 }
 
 impl MixedWork {
+    /// Allocates the workspace of a mixed loop.
     fn new(code: &MixedCode, scales: &VariableScales, modes: &CrossingModes) -> Self {
         let targets: Vec<&AssignTarget> = code.discrete.iter().flat_map(|a| &a.targets).collect();
         let variable = |t: &&AssignTarget| match t.unknown {
@@ -214,6 +237,7 @@ impl MixedWork {
         }
     }
 
+    /// Sets whether the continuous loops may leave undetermined unknowns as they are.
     fn may_keep(&mut self, allowed: bool) {
         for work in &mut self.continuous {
             if let BlockWork::Loop(newton) = work {
@@ -222,13 +246,16 @@ impl MixedWork {
         }
     }
 
-    /// Where no modes determine everything, what they leave open keeps its value, as long as the equations that are left
-    /// over hold: two dry frictions hold one shaft, and each goes on with the load that it has.
+    /// Solves the loop. Where no discrete values determine everything, undetermined unknowns keep their value.
+    ///
+    /// They may only do so while the equations that are left over hold. Example: two dry frictions hold one shaft, and
+    /// each continues with the load that it has.
     fn run(&mut self, code: &MixedCode, setting: &BlockContext<'_>, values: &mut [f64]) -> Result<(), BlockFailure> {
         let start = self.read(values);
         self.undetermined = None;
         self.keeps = false;
         let end = self.determine(code, setting, values, &start);
+        // only a singular matrix justifies the second attempt
         if end.is_ok() || self.undetermined.is_none() {
             return end;
         }
@@ -241,8 +268,9 @@ impl MixedWork {
         kept.or(end)
     }
 
-    /// With what the integrator saw cross; when that contradicts itself, without: the crossing was seen within the error
-    /// of the solution but too early, and will be seen again.
+    /// Solves with the modes that the integrator has seen cross, and without them where that is contradictory.
+    ///
+    /// The crossing was then seen within the error of the solution but too early, and it will be seen again.
     fn determine(
         &mut self,
         code: &MixedCode,
@@ -261,8 +289,7 @@ impl MixedWork {
         }
     }
 
-    /// Fixed point first; when it circles, one change at a time; then combinations of modes, those next to the present
-    /// one first.
+    /// Tries a fixed-point iteration, then one change at a time, then combinations of modes.
     fn search(
         &mut self,
         code: &MixedCode,
@@ -274,6 +301,7 @@ impl MixedWork {
             self.write(start, values);
             match self.iterate(code, setting, values, single) {
                 Ok(true) => return Ok(()),
+                // values on the way may have no solution although the consistent ones do
                 Ok(false) | Err(BlockFailure::Loop(_) | BlockFailure::NonFinite(_)) => {}
                 Err(other) => return Err(other),
             }
@@ -282,16 +310,20 @@ impl MixedWork {
         self.combine(code, setting, values, start)
     }
 
+    /// The present discrete values.
     fn read(&self, values: &[f64]) -> Vec<f64> {
         self.slots.iter().map(|&s| values[s]).collect()
     }
 
+    /// Sets the discrete values.
     fn write(&self, discrete: &[f64], values: &mut [f64]) {
         for (&slot, v) in self.slots.iter().zip(discrete) {
             values[slot] = *v;
         }
     }
 
+    /// Solves the continuous blocks with the present discrete values. Records an unknown that a singular matrix left
+    /// open.
     fn solve_continuous(
         &mut self,
         code: &MixedCode,
@@ -307,13 +339,17 @@ impl MixedWork {
         solved
     }
 
+    /// Computes the discrete values from the continuous ones.
     fn run_discrete(&self, code: &MixedCode, setting: &BlockContext<'_>, values: &mut [f64]) {
         for (assign, corrections) in code.discrete.iter().zip(&self.corrections) {
             run_assign(assign, corrections, setting, values);
         }
     }
 
-    /// True when the discrete values stayed; false when they circle.
+    /// The fixed-point iteration; with `single`, only one discrete value changes in each pass.
+    ///
+    /// `Ok(true)` when the discrete values no longer change, `Ok(false)` when they repeat without end or change for too
+    /// many passes. `Err` when the continuous blocks have no solution on the way.
     fn iterate(
         &mut self,
         code: &MixedCode,
@@ -334,6 +370,7 @@ impl MixedWork {
                 new = first_change(&old, &new, &self.modes);
                 self.write(&new, values);
             }
+            // a state that has occurred before would lead to the same sequence again
             if seen.contains(&new) {
                 return Ok(false);
             }
@@ -342,7 +379,9 @@ impl MixedWork {
         Ok(false)
     }
 
-    /// Tries every combination of a few modes.
+    /// Tries all combinations of the modes of relations, those with the fewest changes first.
+    ///
+    /// With more than [`COMBINED`] modes nothing is tried. `Err` when no combination reproduces itself.
     fn combine(
         &mut self,
         code: &MixedCode,
@@ -350,6 +389,7 @@ impl MixedWork {
         values: &mut [f64],
         start: &[f64],
     ) -> Result<(), BlockFailure> {
+        // only modes with the values of a relation, 0 or 1, can be inverted
         let relations: Vec<usize> =
             self.modes.iter().copied().filter(|&i| start[i] == 0.0 || start[i] == 1.0).collect();
         if relations.len() <= COMBINED {
@@ -359,6 +399,7 @@ impl MixedWork {
             if wanted().any(|wanted| self.fits(code, setting, values, &wanted)) {
                 return Ok(());
             }
+            // a second round accepts modes whose difference is within the error of the solution
             let mut modes = setting.modes.clone();
             for wanted in wanted() {
                 relations.iter().for_each(|&i| self.hold(&mut modes, i, wanted[i]));
@@ -367,20 +408,23 @@ impl MixedWork {
                 }
             }
         }
+        // the message refers to the start values
         self.write(start, values);
         self.solve_continuous(code, setting, values)?;
         Err(BlockFailure::Mixed(self.targets.clone(), self.undetermined))
     }
 
-    /// Lets a mode keep a value as long as what it compares differs by less than the error of the solution: where a current
-    /// and a voltage vanish together, rounding decides on which side of 0 they lie, and may leave no side to any mode.
+    /// Lets a mode keep a value while its two sides differ by less than the error of the solution.
+    ///
+    /// Where a current and a voltage vanish together, rounding decides on which side of 0 they lie, and no value of a
+    /// mode may reproduce itself exactly.
     fn hold(&self, modes: &mut CrossingModes, target: usize, value: f64) {
         if let Some(crossing) = modes.crossing(self.targets[target]) {
             modes.hold(crossing, value);
         }
     }
 
-    /// Whether these modes reproduce themselves.
+    /// Whether these discrete values reproduce themselves: solving with them gives them again.
     fn fits(&mut self, code: &MixedCode, setting: &BlockContext<'_>, values: &mut [f64], wanted: &[f64]) -> bool {
         self.write(wanted, values);
         self.settle_others(code, setting, values, wanted);
@@ -392,8 +436,9 @@ impl MixedWork {
         self.read(values) == before
     }
 
-    /// Computes what depends on the modes, with the modes held.
+    /// Computes discrete values that depend on the modes, with the modes held at `wanted`.
     fn settle_others(&self, code: &MixedCode, setting: &BlockContext<'_>, values: &mut [f64], wanted: &[f64]) {
+        // discrete values may read each other: a few passes let them follow
         for _ in 0..3 {
             let mut at = 0;
             for (assign, corrections) in code.discrete.iter().zip(&self.corrections) {
@@ -409,7 +454,7 @@ impl MixedWork {
     }
 }
 
-/// The start with some of its relations the other way round.
+/// The start values with some of the relations inverted; bit k of `flips` inverts relation k.
 fn flipped(start: &[f64], relations: &[usize], flips: u32) -> Vec<f64> {
     let mut wanted = start.to_vec();
     for (bit, &i) in relations.iter().enumerate() {
@@ -420,7 +465,7 @@ fn flipped(start: &[f64], relations: &[usize], flips: u32) -> Vec<f64> {
     wanted
 }
 
-/// The old values with one change: the first mode that wants to change, else the first of any.
+/// The old values with one change: the first mode that differs, else the first value that differs.
 fn first_change(old: &[f64], new: &[f64], modes: &[usize]) -> Vec<f64> {
     let mut result = old.to_vec();
     let changed = modes.iter().copied().chain(0..old.len()).find(|&i| old[i] != new[i]);

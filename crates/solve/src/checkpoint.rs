@@ -1,7 +1,8 @@
-//! Points of a run from which it goes on as if it had never stopped.
+//! Checkpoints: points of a run from which it continues as if it had never stopped.
 //!
-//! The integrator's past cannot be written down exactly. So a run that makes checkpoints begins afresh at each of them,
-//! from what the checkpoint holds and nothing else; a run that is taken up there does the same, to the last bit.
+//! IDA's past cannot be stored exactly. A run that makes checkpoints therefore restarts IDA at each of them, using only
+//! what the checkpoint holds. A run that is resumed there does the same, so the results agree to the last bit. The text
+//! form stores numbers by their bits. See docs/long_runs.md.
 
 use super::past::DelayHistory;
 use super::settings::Statistics;
@@ -10,34 +11,35 @@ use bramah_expr::VarId;
 use bramah_model::structure::StateChoice;
 use std::fmt::Write as _;
 
-/// Everything a run needs to go on from a point.
+/// Everything that a run needs to continue from a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checkpoint {
-    /// Values of all variables, and the time.
+    /// Values of all variables, the time, and the history of delays.
     pub state: State,
-    /// The how many-th of the run, counted from 1.
+    /// Number of the checkpoint in the run, counted from 1.
     pub number: u64,
-    /// Work and events so far; seconds are not kept.
+    /// Work and events so far. Seconds are not stored.
     pub statistics: Statistics,
-    /// Rows of the grid that are out.
+    /// Number of rows of the grid that are written.
     pub(super) rows: u64,
-    /// The states chosen during the run.
+    /// The states chosen during the run; `None` for the original choice.
     pub(super) choice: Option<StateChoice>,
-    /// No other states can be chosen any more.
+    /// Whether no other states can be chosen any more.
     pub(super) settled: bool,
 }
 
-/// A number as its bits, so that nothing is lost.
+/// A number as its bits in hexadecimal, which keeps every digit.
 fn bits(value: f64) -> String {
     format!("{:016x}", value.to_bits())
 }
 
+/// The number with these bits; `None` where the word is not hexadecimal.
 fn from_bits(word: &str) -> Option<f64> {
     u64::from_str_radix(word, 16).ok().map(f64::from_bits)
 }
 
 impl Checkpoint {
-    /// As text, for [`Checkpoint::from_text`].
+    /// The checkpoint as text, for [`Checkpoint::from_text`].
     pub fn text(&self) -> String {
         let mut out = String::new();
         let (state, s) = (&self.state, &self.statistics);
@@ -56,10 +58,10 @@ impl Checkpoint {
         out
     }
 
-    /// Reads what [`Checkpoint::text`] has written.
+    /// Reads the text of [`Checkpoint::text`].
     ///
     /// # Errors
-    /// Which line cannot be read, counted from 1.
+    /// The number of the line that cannot be read, counted from 1.
     pub fn from_text(text: &str) -> Result<Self, usize> {
         let mut lines = CheckpointLines { lines: text.lines(), at: 0 };
         let time = lines.field("time")?;
@@ -89,6 +91,7 @@ impl Checkpoint {
     }
 }
 
+/// The counts of the statistics in the order of the file.
 fn counts(s: &Statistics) -> [u64; 8] {
     [
         s.steps,
@@ -102,6 +105,7 @@ fn counts(s: &Statistics) -> [u64; 8] {
     ]
 }
 
+/// The statistics with these counts.
 fn statistics(counts: [u64; 8]) -> Statistics {
     let [steps, residual_evaluations, jacobian_evaluations, factorizations, ..] = counts;
     let [.., error_test_failures, crossing_evaluations, events, restarts] = counts;
@@ -118,32 +122,38 @@ fn statistics(counts: [u64; 8]) -> Statistics {
     }
 }
 
-/// Lines on their way, counted.
+/// The lines of a checkpoint, with the number of the present one.
 struct CheckpointLines<'a> {
+    /// Lines not read yet.
     lines: std::str::Lines<'a>,
+    /// Number of the line read last, counted from 1.
     at: usize,
 }
 
 impl<'a> CheckpointLines<'a> {
+    /// The next line; `Err` with its number at the end of the text.
     fn next(&mut self) -> Result<&'a str, usize> {
         self.at += 1;
         self.lines.next().ok_or(self.at)
     }
 
-    /// What follows a line's first word.
+    /// The rest of the next line after its first word, which must be `name`.
     fn field(&mut self, name: &str) -> Result<&'a str, usize> {
         let line = self.next()?;
         let rest = line.strip_prefix(name).map(|rest| rest.strip_prefix(' ').unwrap_or(rest));
         self.need(rest)
     }
 
+    /// An integer after the word `name`.
     fn whole(&mut self, name: &str) -> Result<u64, usize> {
         let word = self.field(name)?;
         self.need(word.parse().ok())
     }
 
+    /// Reads value, derivative and name of a variable.
     fn value(&mut self, state: &mut State) -> Result<(), usize> {
         let line = self.next()?;
+        // the name comes last, because it may contain spaces
         let mut words = line.splitn(3, ' ');
         let value = self.need(words.next().and_then(from_bits))?;
         let derivative = self.need(words.next().and_then(from_bits))?;
@@ -153,6 +163,7 @@ impl<'a> CheckpointLines<'a> {
         Ok(())
     }
 
+    /// Turns a missing value into the number of the present line.
     fn need<T>(&self, found: Option<T>) -> Result<T, usize> {
         found.ok_or(self.at)
     }

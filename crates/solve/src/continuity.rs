@@ -1,36 +1,40 @@
-//! Variables that the equations differentiate but that are no states must not jump at events: their derivative between
-//! events says nothing of a jump, so that the impulse it takes (a force on a mass, a flow into a volume, a voltage at an
-//! inductor) would be missing in all balances.
+//! Check that differentiated variables do not jump at events (E509).
+//!
+//! Index reduction differentiates some equations. Variables that are differentiated there but are no states must stay
+//! continuous: their derivative between events contains nothing of a jump. The impulse that a jump takes (a force on a
+//! mass, a flow into a volume, a voltage at an inductor) would be missing in all balances.
 
 use super::newton::VariableScales;
 use crate::lower::ExecutableSystem;
 use bramah_expr::VarId;
 
-/// A jump counts from this many tolerances on: what the corrector leaves in algebraic unknowns is below.
+/// A change counts as a jump from this many tolerances on. Corrector errors of algebraic unknowns are smaller.
 const JUMP: f64 = 100.0;
 
-/// A variable that has jumped.
+/// A variable that has jumped at an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct VariableJump {
     /// The variable.
     pub variable: VarId,
     /// Its value before the event.
     pub before: f64,
-    /// And behind it.
+    /// Its value after the event.
     pub after: f64,
 }
 
-/// The watch over one run.
+/// The variables to be checked, with their values before the present event.
 #[derive(Debug)]
 pub struct ContinuityMonitor {
-    /// Variable, slot and size of a jump that counts beside the part of the value.
+    /// Variable, slot, and the absolute part of the change that counts as a jump.
     watched: Vec<(VarId, usize, f64)>,
+    /// The part of the value that counts as a jump in addition.
     relative: f64,
+    /// Values before the event, in the order of `watched`.
     before: Vec<f64>,
 }
 
 impl ContinuityMonitor {
-    /// For the variables of a system.
+    /// Watches the differentiated variables of a system.
     pub fn new(system: &ExecutableSystem, scales: &VariableScales, tolerance: f64) -> Self {
         let relative = JUMP * tolerance;
         let watched: Vec<_> = system
@@ -42,14 +46,14 @@ impl ContinuityMonitor {
         ContinuityMonitor { before: vec![0.0; watched.len()], watched, relative }
     }
 
-    /// Remembers the values just before an event.
+    /// Stores the values just before an event.
     pub fn remember(&mut self, values: &[f64]) {
         for (before, &(_, slot, _)) in self.before.iter_mut().zip(&self.watched) {
             *before = values[slot];
         }
     }
 
-    /// The largest jump since then, in tolerances.
+    /// The largest jump since then in tolerances; `None` when nothing has jumped.
     pub fn jump(&self, values: &[f64]) -> Option<VariableJump> {
         let jumps = self.watched.iter().zip(&self.before).filter_map(|(&(variable, slot, absolute), &before)| {
             let after = values[slot];

@@ -1,4 +1,9 @@
-//! One run from its start to its end.
+//! One segment of a run: initialization, then integration by IDA from event to event until `until`.
+//!
+//! A system, settings, recorded inputs and an origin enter [`run`]; a [`RunSegment`] leaves it. [`start`] makes a
+//! driver that the caller advances step by step. `legs` integrates between events, `event` handles them, `outside` is
+//! the interface for stepping, `exchange` leaves the integration to the caller, `tangents` carries sensitivities,
+//! `remember` records what `delay` reads, `failure` explains why a run stops.
 
 mod event;
 pub mod exchange;
@@ -32,45 +37,49 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use tangents::TangentPropagator;
 
-/// The clock, for the statistics' seconds alone: nothing else depends on it.
+/// The clock. Only the seconds of the statistics depend on it, never a result.
 #[allow(clippy::disallowed_methods, reason = "solve_s and initialize_s are measured where they pass")]
 fn now() -> Instant {
     Instant::now()
 }
 
-/// Steps between two looks at the outside when no row is due.
+/// Steps of IDA after which [`Ida::advance`] returns although no row is due, so that interrupts are noticed.
 const PAUSE: u32 = 200;
-/// The same where states may have to be changed in time.
+/// The same for models with dynamic state selection: the states are checked at each pause.
 const PAUSE_WITH_SELECTIONS: u32 = 10;
 
-/// What the corrector may leave, in tolerances, where there are algebraic unknowns: what it leaves in them goes on into
-/// the derivatives and looks like an error of integration. Down to 1e-6 a tenth of it changes neither errors nor work;
-/// below, where orders are high, it fails the error test over and over (the transistor amplifier at 1e-8: 41,000 steps
-/// and 35,000 failures with 0.1, 4,600 steps with 0.001, and an error fifty times smaller).
+/// The tolerance of IDA's corrector, in units of the error tolerance, for systems with algebraic unknowns.
+///
+/// An error that the corrector leaves in an algebraic unknown enters the derivatives and looks like an integration
+/// error. Down to a tolerance of 1e-6 the factor 0.1 changes neither errors nor work. Below, where orders are high, the
+/// error test fails again and again with it. The transistor amplifier at 1e-8 takes 41,000 steps and 35,000 failures
+/// with 0.1, and 4,600 steps with 0.001 at a fiftieth of the error.
 fn algebraic_corrector(tolerance: f64) -> f64 {
     0.1 * (1e6 * tolerance).clamp(0.01, 1.0)
 }
 
-/// The share in the error test of what has no error.
+/// The weight in the error test of a state that is constant and has no error. IDA requires weights above zero.
 const NOTHING: f64 = 1e-30;
 
 /// Why a run ends before its stop time.
 pub struct EarlyStop {
-    /// How.
+    /// The kind of end.
     pub end: End,
-    /// What to say.
+    /// Messages for the user. Empty where the model itself ended the run by `terminate`.
     pub diagnostics: Vec<Diagnostic>,
 }
 
 impl EarlyStop {
+    /// A stop with one message.
     fn new(end: End, diagnostic: Diagnostic) -> Self {
         EarlyStop { end, diagnostics: vec![diagnostic] }
     }
 
-    /// With what functions outside the equations have said.
+    /// Adds messages of external functions (tables, C code) as notes to the first diagnostic.
     fn with_troubles(mut self, system: &ExecutableSystem) -> Self {
         let mut troubles = report::troubles(system);
         if let Some(first) = self.diagnostics.first_mut() {
+            // a message that is the text of the diagnostic itself is not repeated
             troubles.retain(|trouble| !first.message.starts_with(trouble));
             first.notes.extend(troubles);
         }
@@ -78,101 +87,123 @@ impl EarlyStop {
     }
 }
 
+/// `Err` ends the run early.
 type StopResult = Result<(), EarlyStop>;
 
-/// Where a run starts when not at its initial values.
+/// Where a run starts, if not at its initial values.
 pub enum RunOrigin<'a> {
-    /// At a saved state.
+    /// At a saved state. Its rows begin at the time of the state.
     State(&'a State),
-    /// Where the same run stopped for other states; its rows go on as if nothing had happened.
+    /// Where the previous segment of the same run ended. The rows continue on its grid, without a row at the start.
     Switch(&'a State, OutputGrid),
 }
 
-/// Why a run stands before its end, and how it goes on.
+/// Why a segment ended before the end of the run, and what the next segment needs.
 pub struct StateSwitch {
-    /// The states to go on with; `None` at a checkpoint.
+    /// The states for the next segment; `None` at a checkpoint.
     pub choice: Option<StateChoice>,
-    /// The rows that are out.
+    /// The output grid, which knows how many rows have been written.
     pub grid: OutputGrid,
 }
 
 /// A run, or the part of it up to a checkpoint or a change of states.
 pub struct RunSegment {
-    /// What it came to.
+    /// Outcome of this segment alone.
     pub run: RunResult,
-    /// Set when the run is to go on.
+    /// Set when another segment must follow.
     pub switch: Option<StateSwitch>,
 }
 
 /// What caused an event.
 #[derive(Clone, Copy, PartialEq)]
 enum EventCause {
-    /// The start of the run.
+    /// The start of the run, where the event iteration runs once.
     Start,
-    /// A known time.
+    /// A known time: a sample, a relation of time, a jump of an input, or an input set by the caller.
     Time,
-    /// A sign change found by IDA.
+    /// A sign change of a crossing function, found by IDA or at a stop.
     Root,
-    /// The end of the run.
+    /// The end of the run, where `terminal()` is true.
     Terminal,
 }
 
-/// A run under way.
+/// A run in progress: the integrator, the discrete state, the output and all monitors.
 pub struct Driver<'a, 'c> {
+    /// The kernels and the sorted DAE.
     system: &'a ExecutableSystem,
+    /// Tolerance, times, wanted variables.
     settings: &'a Settings,
-    /// None when the caller steps from outside.
+    /// Interrupt, progress and reselection. `None` when the caller steps from outside.
     control: Option<&'a mut Control<'c>>,
+    /// Receives the rows. `None` when the caller steps from outside.
     sink: Option<&'a mut dyn RowSink>,
-    /// Where the integrator must not pass.
+    /// End of this segment in seconds. The integrator never passes it.
     until: f64,
-    /// Present from the start on; before that the model stands alone.
+    /// The integrator, which owns the model. `None` until [`Driver::integrator`] has made it.
     ida: Option<Ida<IntegrationModel<'a>>>,
+    /// Nominal values, minima and maxima of all variables.
     scales: VariableScales,
+    /// The side of zero on which each crossing function stands.
     modes: CrossingModes,
+    /// The event iteration and its workspace.
     events: EventHandler,
+    /// Next times of all `sample` operators.
     clocks: SampleClocks,
+    /// Times at which rows are due.
     grid: OutputGrid,
-    /// The first row is out already.
+    /// No row is written at the start, because the previous segment wrote it.
     silent: bool,
-    /// Pauses in a row between which time hardly moved.
+    /// Number of consecutive pauses between which time hardly moved.
     creep: u32,
-    /// Where algebraic unknowns were last solved anew without an event.
+    /// Time at which algebraic unknowns were last solved anew without an event, in seconds.
     renewed: f64,
-    /// How often.
+    /// Number of restarts without an event.
     renewals: u32,
-    /// When a loop jumped to another root last, and how many tolerances ahead it was sought.
+    /// Time of the last jump of a loop to another root, and how far ahead that root was searched, in tolerances.
     jumped: (f64, f64),
-    /// Whether algebraic unknowns are left out of the error test.
+    /// Whether the error test leaves out algebraic unknowns until the next event.
     tests_states_only: bool,
-    /// Other states to go on with.
+    /// Other states with which the next segment must continue.
     choice: Option<StateChoice>,
+    /// Computes the wanted variables from the unknowns.
     program: Program,
+    /// Slots of the wanted variables, in the order of the row.
     slots: Vec<usize>,
+    /// One row: the wanted values, then for each direction of sensitivity their derivatives.
     row: Vec<f64>,
+    /// Values around an event, and the decision whether IDA restarts.
     restart: IntegratorRestart,
+    /// Checks that differentiated variables do not jump at events without `reinit`.
     continuity: ContinuityMonitor,
-    /// Sensitivities, where they are asked for.
+    /// Sensitivities. `None` where the settings ask for none.
     carried: Option<Box<TangentPropagator>>,
-    /// Length of the last step before an event.
+    /// Length of the last step before an event, in seconds.
     last_step: f64,
+    /// Solves the algebraic equations at interpolated points, so that rows satisfy them.
     algebraic: AlgebraicSolver,
+    /// Detects too many events in a short time.
     chatter: ChatterMonitor,
+    /// Detects impacts whose times accumulate (Zeno behaviour).
     accumulation: ImpactAccumulation,
+    /// Which warnings have been reported; each is reported once.
     reported: AssertionReports,
-    /// Inputs that change at the next event, as slots and values.
+    /// Slots and new values of inputs that change at the next event.
     pending: Vec<(usize, f64)>,
+    /// Present time in seconds.
     t: f64,
-    /// The next time at which a relation of time changes.
+    /// The next time at which a relation of time alone changes, in seconds.
     next_crossing: f64,
-    /// Other relations of time.
+    /// Forecast of all other crossing functions that depend on time alone.
     foresight: CrossingForecast<'a>,
+    /// Direction of each root function at the present event: 1 rising, -1 falling, 0 not crossed.
     roots: Vec<i32>,
+    /// Counts of work.
     statistics: Statistics,
+    /// Warnings so far.
     diagnostics: Vec<Diagnostic>,
 }
 
-/// Runs a system from its initial values, or from a saved state, until a time at most.
+/// Runs a system from its initial values, or from `from`, until the time `until` at most.
 pub fn run<'a>(
     system: &'a ExecutableSystem,
     settings: &'a Settings,
@@ -189,10 +220,10 @@ pub fn run<'a>(
     driver.complete(model, solved, resumed, clock)
 }
 
-/// A run that stands at its start, to be taken further from outside.
+/// Initializes a run that the caller then advances with [`Driver::advance`].
 ///
 /// # Errors
-/// As a run that ends there.
+/// Initialization or the first event iteration failed.
 pub fn start<'a>(
     system: &'a ExecutableSystem,
     settings: &'a Settings,
@@ -202,13 +233,14 @@ pub fn start<'a>(
     let resumed = from.is_some();
     let (mut driver, mut model, solved) = prepare(system, settings, inputs, from.map(RunOrigin::State), None, None);
     solved.map_err(|d| stop_at_start(d).with_troubles(system))?;
-    // the caller says how far each step goes: a state from behind the stop time is a start like others
+    // the caller chooses each target: a state saved after the stop time is a valid start too
     driver.until = driver.until.max(driver.t + (settings.stop_time - settings.start_time).abs());
     driver.begin(&mut model, resumed)?;
     driver.integrator(model)?;
     Ok(driver)
 }
 
+/// Turns a failed initialization into the end of the run.
 fn stop_at_start(diagnostic: Diagnostic) -> EarlyStop {
     let end = match diagnostic.code {
         Code::NonFinite => End::NonFinite,
@@ -218,7 +250,10 @@ fn stop_at_start(diagnostic: Diagnostic) -> EarlyStop {
     EarlyStop::new(end, diagnostic)
 }
 
-/// A driver, its model, and whether the model's values at the start were found.
+/// Makes a driver and its model, and solves the initial system unless a state is given.
+///
+/// The third element is `Err` when no consistent values were found. Driver and model are returned then too, since the
+/// result of the run reports the values reached.
 fn prepare<'a, 'c>(
     system: &'a ExecutableSystem,
     settings: &'a Settings,
@@ -236,6 +271,7 @@ fn prepare<'a, 'c>(
     let start = from.map_or(settings.start_time, |s| s.time);
     values[ValueLayout::TIME] = start;
     let mut playback = super::inputs::InputPlayback::new(inputs, &system.layout);
+    // time and inputs must be in place before nominal values are evaluated
     playback.seek(start, &mut values);
     let scales = VariableScales::new(system, &values);
     let mut modes = CrossingModes::new(system, settings.tolerance);
@@ -245,9 +281,11 @@ fn prepare<'a, 'c>(
         Some(state) => {
             state.restore(system, &mut values);
             system.parameters_changed(&mut values);
+            // relations of time hold as just after their time, as at events
             modes.after = true;
             Ok(Vec::new())
         }
+        // a new run: asserted parameters, then the initial system, then redundant fixed starts
         None => initialize::check_parameters(system, settings, &values)
             .and_then(|()| {
                 let found = initialize::solve(system, &scales, &mut modes, &mut values);
@@ -259,14 +297,17 @@ fn prepare<'a, 'c>(
         Ok(missed) => (Ok(()), missed),
         Err(d) => (Err(d), Vec::new()),
     };
+    // the first failure is reported: initialization before the delays
     let solved = solved.and(delays.map(|delays| playback.delays = delays).map_err(|(i, time)| {
         let origin = system.dae.delays[i].origin;
         let text = format!("the time of a `delay` must be positive, and is {} s", report::number(time));
         report::at_origin(&system.dae, Code::OutOfRange, text, origin, "here")
     }));
+    // a saved state brings its own history of delays
     if playback.delays.past().is_empty() {
         playback.delays.start(system, start, &mut values);
     }
+    // restoring the state has overwritten the slots of inputs
     if from.is_some() {
         playback.seek(start, &mut values);
     }
@@ -274,6 +315,7 @@ fn prepare<'a, 'c>(
     if from.is_some() {
         restart.resume(system, &mut values);
     }
+    // without unknowns there is nothing to be sensitive
     let asked = settings.tangents.as_ref().filter(|_| !system.columns.is_empty());
     let carried =
         asked.map(|asked| Box::new(TangentPropagator::new(system, asked, &settings.wanted, restart.nominal())));
@@ -324,6 +366,7 @@ fn prepare<'a, 'c>(
 }
 
 impl<'a> Driver<'a, '_> {
+    /// Runs the first event iteration and the integration, and collects the result.
     fn complete(
         mut self,
         mut model: IntegrationModel<'a>,
@@ -337,6 +380,7 @@ impl<'a> Driver<'a, '_> {
         };
         self.statistics.initialize_s = clock.elapsed().as_secs_f64();
         let clock = now();
+        // time spent in the sink (files, callbacks) is not time of the solver
         let before = self.writing();
         let (end, values) = match end.and_then(|()| self.integrator(model.clone())) {
             Err(stop) => (Err(stop), model.values),
@@ -352,10 +396,12 @@ impl<'a> Driver<'a, '_> {
         self.finish(end, &values, past)
     }
 
+    /// Time spent in the sink so far.
     fn writing(&self) -> Duration {
         self.sink.as_ref().map_or(Duration::ZERO, |sink| sink.writing())
     }
 
+    /// Ends the segment: collects diagnostics and counts, saves the state, and says whether another segment follows.
     fn finish(mut self, end: StopResult, values: &[f64], past: DelayHistory) -> RunSegment {
         let stands = end.is_ok() && (self.choice.is_some() || self.pauses());
         let end = match end {
@@ -378,12 +424,12 @@ impl<'a> Driver<'a, '_> {
         RunSegment { run, switch: stands.then_some(StateSwitch { choice: self.choice, grid: self.grid }) }
     }
 
-    /// Whether the run goes on behind where this leg ends.
+    /// Whether this segment ends at a checkpoint before the stop time.
     fn pauses(&self) -> bool {
         self.until < self.settings.stop_time
     }
 
-    /// Brings the statistics up to date.
+    /// Copies the counters of IDA and of the algebraic solver into the statistics.
     fn count_work(&mut self) {
         self.statistics.unknowns = self.system.columns.len();
         self.statistics.states = self.system.columns.iter().filter(|c| c.is_state()).count();
@@ -398,16 +444,17 @@ impl<'a> Driver<'a, '_> {
         }
     }
 
-    /// The event iteration at the start, and the first row.
+    /// The event iteration at the start, the first row, and the checks of assertions there.
     fn begin(&mut self, model: &mut IntegrationModel<'a>, resumed: bool) -> StopResult {
         let system = self.system;
         let mut outcome = EventOutcome::default();
+        // actions that fire at `initial()` use the values of initialization, before any `pre` changes
         if !resumed {
-            // what fires at `initial()`, with the values that initialization has found
             model.values[ValueLayout::INITIAL] = 1.0;
             self.events.act(system, &mut model.values, &mut outcome);
             model.values[ValueLayout::INITIAL] = 0.0;
         }
+        // from here on `pre(v)` equals `v`
         self.events.settle_pre(&mut model.values);
         self.clocks = SampleClocks::new(system, &model.values, self.t).map_err(|i| {
             let sample = &system.dae.samples[i];
@@ -419,17 +466,19 @@ impl<'a> Driver<'a, '_> {
             )
         })?;
         if resumed {
+            // samples at or before the time of a saved state have been handled already
             self.clocks.skip(self.t);
         }
         let events = &self.events;
         self.clocks.ring(self.t, |i| events.raise(i, &mut model.values));
         let mut at_start = self.iterate(model, EventCause::Start)?;
-        // what happens at the start may change what the past begins with
+        // actions at the start may change the values with which the delay history begins
         if !resumed && model.playback.delays.start(system, self.t, &mut model.values) {
             at_start = self.iterate(model, EventCause::Start)?;
         }
         outcome.terminate = outcome.terminate.or(at_start.terminate);
         outcome.failed.extend(at_start.failed);
+        // the row below holds sensitivities too
         self.start_tangents(model)?;
         if !self.silent {
             self.tangent_cells(model);
@@ -439,7 +488,9 @@ impl<'a> Driver<'a, '_> {
         self.judge(model, &outcome)
     }
 
-    /// Writes the wanted values that stand in their slots.
+    /// Writes one row from the slots of the wanted variables.
+    ///
+    /// Fails when impacts have accumulated, when a value is not finite, or when the sink ends the run.
     fn write_row(&mut self, model: &mut IntegrationModel<'a>) -> StopResult {
         if let Some(relation) = self.accumulation.watched()
             && let Some(d) = self.accumulation.judge(self.system, self.t, self.distance(relation, &model.values))
@@ -453,6 +504,7 @@ impl<'a> Driver<'a, '_> {
             *cell = model.values[slot];
         }
         if self.row.iter().any(|v| !v.is_finite()) {
+            // a row with NaN or infinity never reaches the sink
             return Err(self.non_finite_row(model));
         }
         match self.sink.as_mut().map(|sink| sink.row(self.t, &self.row)) {
@@ -461,7 +513,7 @@ impl<'a> Driver<'a, '_> {
         }
     }
 
-    /// How far the sides of a relation are apart.
+    /// Left minus right side of a relation, in the unit of its sides; 0 for other crossings.
     fn distance(&self, relation: u32, values: &[f64]) -> f64 {
         match self.system.dae.crossings[relation as usize].kind {
             CrossingKind::Relation(_, left, right) => self.system.eval(left, values) - self.system.eval(right, values),
@@ -469,11 +521,11 @@ impl<'a> Driver<'a, '_> {
         }
     }
 
-    /// Makes the integrator from the values of the start.
+    /// Creates IDA from consistent values and sets tolerances, step bounds and the first step.
     fn integrator(&mut self, mut model: IntegrationModel<'a>) -> StopResult {
         let system = self.system;
         let still = system.columns.is_empty();
-        // without unknowns IDA still finds the roots of functions of time: it integrates a constant
+        // without unknowns IDA integrates one constant, so that roots of functions of time are still found
         let pattern =
             if still { SparsityPattern { n: 1, colptr: vec![0, 1], rowidx: vec![0] } } else { system.pattern.clone() };
         let nominal = self.restart.nominal();
@@ -484,24 +536,28 @@ impl<'a> Driver<'a, '_> {
         };
         let mut lu = Lu::new(&pattern, nominal);
         lu.may_keep(self.events.kept().is_some());
+        // y and y' come from the slots that initialization has filled
         self.restart.gather(system, &mut model.values);
         let roots = model.roots.len();
         let start = (self.t, self.restart.y(), self.restart.yp());
         let ida = Ida::new(model, &pattern, lu, roots, &tolerances, start);
         let mut ida = ida.map_err(|f| self.refused(&f))?;
-        // a caller who steps may go on from behind the stop time
+        // a caller who steps may continue after the stop time
         let ahead = self.settings.stop_time - self.t;
         let span = if ahead > 0.0 { ahead } else { self.settings.stop_time - self.settings.start_time };
         let unseen = system.dae.states.is_empty() || follows_time(&system.dae);
+        // with nothing to control its error, the step would grow over whole peaks of functions of time
         let longest = self.settings.longest_step.min(if unseen { span / 500.0 } else { f64::INFINITY });
         let recorded = &ida.watch().playback.delays;
         let (known, delays) = (recorded.longest_step(), !recorded.is_empty());
+        // a step longer than the shortest delay would read values that are not recorded yet
         ida.set_longest_step(longest.min(known));
+        // IDA's default of 0.33 is enough where every unknown has its own derivative
         if !self.restart.is_explicit() {
             ida.set_corrector_tolerance(algebraic_corrector(self.settings.tolerance));
         }
         ida.pause_after(match () {
-            // each step is recorded
+            // each step must be recorded for the delays
             () if delays => 1,
             () if system.dae.selections.is_empty() => PAUSE,
             () => PAUSE_WITH_SELECTIONS,
@@ -514,22 +570,25 @@ impl<'a> Driver<'a, '_> {
         Ok(())
     }
 
-    /// How errors of the unknowns count: those of states that stand still do not.
+    /// The weight of each unknown's error in the error test. States that are constant count as nothing.
     fn shares(&self) -> Vec<f64> {
         let mut shares = algebraic::shares(self.system);
         let still = self.settings.tangents.iter().flat_map(|t| &t.still);
         let places: Vec<usize> = still.filter_map(|&v| super::tangents::column(self.system, v)).map(|c| c.0).collect();
         let n = shares.len() as f64;
+        // IDA averages over all n unknowns: without this factor constant states would dilute the error of the others
         let part = (n / (n - places.len() as f64).max(1.0)).sqrt();
         shares.iter_mut().for_each(|s| *s *= part);
         places.into_iter().for_each(|j| shares[j] = NOTHING);
         shares
     }
 
+    /// The integrator. Panics before [`Driver::integrator`] has made it.
     fn ida(&mut self) -> &mut Ida<IntegrationModel<'a>> {
         self.ida.as_mut().expect("made before the first step")
     }
 
+    /// All slots at the present time, with algebraic unknowns solved.
     fn last_values(&mut self) -> Vec<f64> {
         let t = self.t;
         self.with_model(|driver, model, y, yp| {
@@ -539,8 +598,9 @@ impl<'a> Driver<'a, '_> {
         })
     }
 
-    /// Runs `act` with the model and the integrator's values at hand.
+    /// Runs `act` with the driver, the model, and the unknowns and derivatives of IDA.
     fn with_model<T>(&mut self, act: impl FnOnce(&mut Self, &mut IntegrationModel<'a>, &[f64], &[f64]) -> T) -> T {
+        // the integrator owns the model: it is taken out, so that `act` may borrow the driver too
         let mut ida = self.ida.take().expect("made before the first step");
         let (model, y, yp) = ida.parts();
         let result = act(self, model, y, yp);

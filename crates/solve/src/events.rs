@@ -1,5 +1,9 @@
-//! The event iteration: with `pre` values fixed everything is solved; then `pre` becomes the new values; until nothing
-//! changes.
+//! The event iteration (MLS 8.6, 8.3.5): solve with fixed `pre` values, then set `pre` to the new values, and repeat
+//! until nothing changes.
+//!
+//! The driver calls [`EventHandler::iterate`] with the array of values at the time of an event. Actions of `when`
+//! clauses (`reinit`, `assert`, `terminate`) are carried out after each pass that changed a discrete value. Later
+//! passes solve only blocks whose inputs have changed (`stale`).
 
 use super::blocks::{BlockContext, BlockFailure, BlockWorkspace};
 use super::modes::CrossingModes;
@@ -13,16 +17,16 @@ use bramah_model::structure::{EventActionKind, Unknown};
 /// Passes before the iteration counts as endless.
 const PASSES: usize = 200;
 
-/// What an event did.
+/// What an event changed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EventOutcome {
-    /// A discrete value changed.
+    /// Whether a discrete value changed.
     pub changed: bool,
-    /// A state was set by `reinit`.
+    /// Whether a state was set by `reinit`.
     pub reinitialised: bool,
-    /// A crossing that the integrator saw did not take place.
+    /// Whether a crossing that the integrator saw did not take place.
     pub refused: bool,
-    /// The message of a `terminate`.
+    /// The message of the first `terminate`; `None` without one.
     pub terminate: Option<String>,
     /// Assertions inside `when` that failed: index into `Dae::actions`, and the text.
     pub failed: Vec<(usize, String)>,
@@ -31,28 +35,29 @@ pub struct EventOutcome {
 /// Why an event has no consistent end.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EventFailure {
-    /// The blocks could not be solved.
+    /// A block could not be solved.
     Blocks(BlockFailure),
-    /// Discrete values that kept changing.
+    /// Discrete values kept changing; holds the variables.
     Endless(Vec<VarId>),
 }
 
-/// The machinery of events, allocated once.
+/// The event system with its workspace, allocated once.
 #[derive(Debug)]
 pub struct EventHandler {
+    /// Workspace of the event blocks.
     blocks: BlockWorkspace,
-    /// Variable, its slot and the slot of its `pre` value, of every discrete variable.
+    /// For each discrete variable its slot and the slot of its `pre` value.
     discrete: Vec<(VarId, usize, usize)>,
     /// Slot of the mode of each `sample`.
     samples: Vec<usize>,
-    /// Slots and values of the `reinit`s of one pass.
+    /// Slots and new values of the `reinit`s of one pass.
     reinits: Vec<(usize, f64)>,
-    /// Made for the first event that takes a second pass.
+    /// Dependences between blocks. Made for the first event that takes a second pass.
     stale: Option<StaleBlocks>,
 }
 
 impl EventHandler {
-    /// For the event blocks of a system.
+    /// Prepares the event blocks of a system.
     pub fn new(system: &ExecutableSystem, scales: &VariableScales, modes: &CrossingModes) -> Self {
         let samples = system.dae.samples.iter().map(|s| s.mode);
         let mut variables: Vec<VarId> = system.dae.discrete.iter().copied().chain(samples.clone()).collect();
@@ -68,14 +73,14 @@ impl EventHandler {
         }
     }
 
-    /// `pre` of all discrete variables becomes their value.
+    /// Sets `pre` of all discrete variables to their present value.
     pub fn settle_pre(&self, values: &mut [f64]) {
         for &(_, now, before) in &self.discrete {
             values[before] = values[now];
         }
     }
 
-    /// The same within an iteration: what reads them waits for the next pass.
+    /// The same within an iteration; blocks that read a changed `pre` value become stale.
     fn move_pre(&self, stale: &mut StaleBlocks, values: &mut [f64]) {
         for &(_, now, before) in &self.discrete {
             if values[before] != values[now] {
@@ -85,26 +90,28 @@ impl EventHandler {
         }
     }
 
-    /// What the last iteration left open, and what switched there ([`BlockWorkspace::kept`]).
+    /// The unknown that the last iteration left open, with the discrete variables of its loop
+    /// ([`BlockWorkspace::kept`]).
     pub fn kept(&self) -> Option<(&[VarId], Unknown)> {
         self.blocks.kept()
     }
 
-    /// Whether loops may end at another root than that at hand.
+    /// Sets whether loops may end at another root than the present one.
     pub fn may_jump(&mut self, allowed: bool) {
         self.blocks.may_jump(allowed);
     }
 
-    /// Whether a loop was solved by a search in the last iteration, and may have jumped.
+    /// Whether a loop was solved by a search in the last iteration and may be at another root.
     pub fn searched(&self) -> bool {
         self.blocks.searched()
     }
 
-    /// Raises the mode of a `sample`; the iteration lowers it again.
+    /// Sets the mode of a `sample` to true; the iteration sets it to false again.
     pub fn raise(&self, sample: usize, values: &mut [f64]) {
         values[self.samples[sample]] = 1.0;
     }
 
+    /// Whether a discrete value differs from its `pre` value.
     fn changed(&self, values: &[f64]) -> bool {
         self.discrete.iter().any(|&(_, now, before)| values[now] != values[before])
     }
@@ -112,7 +119,7 @@ impl EventHandler {
     /// Iterates at the time and states in `values`.
     ///
     /// # Errors
-    /// [`EventFailure`]; `values` is where it failed.
+    /// [`EventFailure`]. `values` then holds the point of the failure.
     pub fn iterate(
         &mut self,
         system: &ExecutableSystem,
@@ -123,10 +130,12 @@ impl EventHandler {
         let setting = BlockContext { system, scales, modes };
         let mut outcome = EventOutcome::default();
         let mut moving = Vec::new();
+        // the first pass solves everything, since the states have moved since the last event
         self.blocks.run(&system.event, &setting, values).map_err(EventFailure::Blocks)?;
         system.aliases(values);
         for pass in 1..PASSES {
             let changed = self.changed(values);
+            // consistent: no value differs from its `pre` value and no sample is active
             if !changed && !self.samples_up(values) {
                 return Ok(outcome);
             }
@@ -135,10 +144,12 @@ impl EventHandler {
                 outcome.changed = true;
                 self.act(system, values, &mut outcome);
                 self.reinits.iter().for_each(|&(slot, _)| stale.touch(slot));
+                // only variables that still change in the last passes are named in the message
                 if pass + 10 >= PASSES {
                     moving.extend(self.discrete.iter().filter(|d| values[d.1] != values[d.2]).map(|d| d.0));
                 }
                 self.move_pre(&mut stale, values);
+            // samples end only after everything that they cause has settled
             } else {
                 self.lower_samples(&mut stale, values);
             }
@@ -151,12 +162,15 @@ impl EventHandler {
         Err(EventFailure::Endless(moving))
     }
 
+    /// Whether the mode of a `sample` is true.
     fn samples_up(&self, values: &[f64]) -> bool {
         self.samples.iter().any(|&now| values[now] != 0.0)
     }
 
-    /// `sample` holds only at its instant (MLS 3.7.5). Its end is a change of its own, for which `pre` of it is still
-    /// true: `when pre(c) and not c` fires at the instant of the pulse.
+    /// Ends all samples: `sample` is true only at its instant (MLS 3.7.5).
+    ///
+    /// The end is a change of its own, with `pre` of the sample still true, so that `when pre(c) and not c` fires at
+    /// the same instant.
     fn lower_samples(&self, stale: &mut StaleBlocks, values: &mut [f64]) {
         for &now in &self.samples {
             if values[now] != 0.0 {
@@ -166,7 +180,7 @@ impl EventHandler {
         }
     }
 
-    /// Does what fires in this pass. New values of states are computed before any of them is set.
+    /// Carries out the actions that fire in this pass. New values of states are computed before any of them is set.
     pub fn act(&mut self, system: &ExecutableSystem, values: &mut [f64], outcome: &mut EventOutcome) {
         if system.dae.actions.is_empty() {
             return;

@@ -1,6 +1,9 @@
-//! SUNDIALS IDA (of IDAS) behind a safe interface. The only place that knows SUNDIALS, and the only `unsafe` of `solve`.
+//! SUNDIALS IDA (as part of IDAS) behind a safe interface.
 //!
-//! The matrix and the linear solver are our own ([`Lu`]); what C calls is in `context`.
+//! [`Ida`] integrates `F(t, y, y') = 0` with variable-order BDF (order 1 to 5) and finds sign changes of functions. The
+//! equations come through the trait [`DaeEquations`]; the matrix and the linear solver are our own ([`Lu`]). `context`
+//! holds the functions that C calls, `operations` our vector loops, `sensitivity` the forward sensitivities.
+//! This module is the only one that knows SUNDIALS. Source: A. Hindmarsh et al., User Documentation for IDAS.
 
 #![allow(unsafe_code, reason = "calls into SUNDIALS; each block states why it is sound")]
 
@@ -17,126 +20,138 @@ use std::os::raw::{c_int, c_long, c_void};
 use std::ptr::null_mut;
 use sundials_sys as s;
 
-/// Quarterings of one step before the integrator gives up, unless the shortest step comes first. IDA's own ten stop at a
-/// millionth of the usual step, before a valve's edge: a pressure between closed valves runs away as one of them opens.
+/// Number of failures within one step before IDA gives up, unless the shortest step comes first.
+///
+/// IDA's default of 10 stops at a millionth of the usual step. That is too early at the edge of a valve, where the
+/// pressure between closed valves changes fast as one of them opens.
 const MOST_FAILURES: c_int = 30;
 
-/// How an evaluation went.
+/// The result of an evaluation of the equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EvaluationStatus {
     /// All values are finite.
     Done,
-    /// Some value is not: IDA shall try a smaller step.
+    /// Some value is not finite: IDA shall repeat the step with a smaller one.
     Retry,
 }
 
-/// The equations `F(t, y, y') = 0` and their zero crossings.
+/// The equations `F(t, y, y') = 0`, their Jacobian and their crossing functions. All vectors have n entries.
 pub trait DaeEquations {
     /// Writes `F(t, y, yp)` to `r`.
     fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus;
 
-    /// The same with rows that say how fast each unknown moves, where there are such rows.
+    /// As `residual`, with rows `y' - f` for as many unknowns as possible. The default is `residual` itself.
     fn rate_residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus {
         self.residual(t, y, yp, r)
     }
 
-    /// Writes every entry of `dF/dy + cj dF/dyp` to `val`, in the order of the pattern.
+    /// Writes all entries of `dF/dy + cj dF/dyp` to `val`, in the order of the sparsity pattern.
     fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> EvaluationStatus;
 
-    /// Writes the functions whose sign changes are sought to `g`.
+    /// Writes the functions whose sign changes are events to `g`, one entry per root function.
     fn crossings(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]);
 }
 
-/// Equations with derivatives along a direction.
+/// Equations with directional derivatives, for sensitivities.
 pub trait DifferentiableEquations: DaeEquations {
-    /// Prepares dF/dy and dF/dyp at a point; nothing is done where they stand there already.
+    /// Computes dF/dy and dF/dyp at a point; does nothing when they are stored for this point.
     fn differentiate(&mut self, t: f64, y: &[f64], yp: &[f64]) -> EvaluationStatus;
 
-    /// The equations themselves have changed, as at an event.
+    /// Discards the stored derivatives, because the equations have changed, for example at an event.
     fn forget(&mut self);
 
-    /// Writes `dF/dy s + dF/dyp sp` at that point to `r`.
+    /// Writes `dF/dy s + dF/dyp sp` at the stored point to `r`.
     fn along(&self, s: &[f64], sp: &[f64], r: &mut [f64]);
 }
 
 /// Why a call of [`Ida::advance`] returned.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AdvanceReturn {
-    /// The output time, by interpolation.
+    /// The requested time is reached; the values are interpolated within the last step.
     Output,
-    /// The stop time, exactly.
+    /// The stop time is reached exactly, at the end of a step.
     Stop,
-    /// A sign change of a crossing function, just behind it.
+    /// A crossing function has changed sign. The time returned lies just behind the root.
     Root,
-    /// Neither yet; the number of steps given to [`Ida::pause_after`] has been made.
+    /// The number of steps given to [`Ida::pause_after`] has been made; nothing else is due.
     Pause,
 }
 
 /// Why IDA gave up.
 #[derive(Clone, Debug, PartialEq)]
 pub enum IdaFailure {
-    /// The error test failed too often, or with the smallest step.
+    /// The error test failed too often within one step, or with the shortest step.
     ErrorTest,
     /// The corrector did not converge.
     Convergence,
-    /// The Jacobian stayed singular; the unknown without pivot, if known.
+    /// The iteration matrix stayed singular; holds the column without pivot, if known.
     Singular(Option<SingularMatrix>),
-    /// The equations stayed not finite however small the step.
+    /// The residual or the Jacobian was not finite however small the step.
     NonFinite,
-    /// More accuracy was asked for than numbers of 64 bits give.
+    /// The tolerance is too small for the precision of 64-bit numbers.
     TooMuchAccuracy,
-    /// A callback panicked: a bug of ours.
+    /// A callback panicked; holds its message.
     Panic(String),
-    /// Any other return code.
+    /// Any other negative return code of IDA.
     Code(i32),
 }
 
-/// Tolerances.
+/// Error tolerances. The weight of unknown i in IDA's norm is `share[i] / (relative * |y[i]| + absolute[i])`.
 #[derive(Clone, Debug)]
 pub struct IntegratorTolerances {
-    /// Relative to the values.
+    /// Tolerance relative to the values.
     pub relative: f64,
-    /// Absolute, per unknown; positive.
+    /// Absolute tolerances, one per unknown, positive.
     pub absolute: Vec<f64>,
-    /// By how much an error counts, per unknown: it is divided by its tolerance, multiplied by this, and the root of the
-    /// mean square over all unknowns must stay below one.
+    /// Factor on the weighted error, one per unknown. IDA's norm is the root mean square over all unknowns; a step is
+    /// accepted when the norm of its error is below 1.
     pub share: Vec<f64>,
 }
 
-/// Work done since the beginning, restarts included.
+/// Work done since the integrator was created, restarts included.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct IntegratorCounters {
     /// Accepted steps.
     pub steps: u64,
-    /// Evaluations of the equations.
+    /// Evaluations of the residual.
     pub residuals: u64,
     /// Evaluations of the Jacobian.
     pub jacobians: u64,
-    /// Factorisations of the iteration matrix.
+    /// Factorizations of the iteration matrix.
     pub factorizations: u64,
-    /// Steps repeated because their error was too large.
+    /// Steps repeated because their estimated error was too large.
     pub error_test_failures: u64,
-    /// Corrector iterations that did not converge.
+    /// Steps in which the corrector did not converge.
     pub convergence_failures: u64,
     /// Evaluations of the crossing functions.
     pub crossings: u64,
 }
 
-/// One integrator.
+/// One integrator with its equations. It owns all C objects and frees them when dropped.
 pub struct Ida<E: DaeEquations> {
+    /// The SUNDIALS context in which all objects are created.
     sundials: s::SUNContext,
+    /// IDA's memory block.
     memory: *mut c_void,
+    /// Unknowns at the time last returned.
     y: s::N_Vector,
+    /// Derivatives at that time.
     yp: s::N_Vector,
+    /// A vector into which IDA writes for short queries.
     scratch: s::N_Vector,
+    /// Shell of the Jacobian; its content is a `Vec<f64>` with one value per entry of the pattern.
     matrix: s::SUNMatrix,
+    /// Shell of the linear solver; its content is `context`.
     solver: s::SUNLinearSolver,
+    /// Equations, tolerances and LU, which the callbacks reach by this pointer. Made by `Box::into_raw`.
     context: *mut IdaContext<E>,
+    /// Number of unknowns.
     n: usize,
-    /// Sensitivities handed over: values, then rates.
+    /// Vectors for sensitivities: the values of all directions, then their time derivatives.
     tangents: Vec<s::N_Vector>,
-    /// Work done before the last restart.
+    /// Work done before the last restart; IDA's own counters start again there.
     before: IntegratorCounters,
+    /// Directions of the roots last found, one entry per crossing function.
     found: Vec<c_int>,
 }
 
@@ -144,10 +159,10 @@ pub struct Ida<E: DaeEquations> {
 unsafe impl<E: DaeEquations + Send> Send for Ida<E> {}
 
 impl<E: DaeEquations> Ida<E> {
-    /// An integrator at time `t` with consistent `y` and `yp` (at least one unknown).
+    /// Creates an integrator at time `t` with consistent `y` and `yp`. There must be at least one unknown.
     ///
     /// # Errors
-    /// [`IdaFailure::Code`] when SUNDIALS refuses the input.
+    /// [`IdaFailure::Code`] when SUNDIALS rejects the input.
     pub fn new(
         equations: E,
         pattern: &SparsityPattern,
@@ -164,6 +179,7 @@ impl<E: DaeEquations> Ida<E> {
             assert_eq!(s::SUNContext_Create(s::comm_no_mpi(), &raw mut sundials), 0, "SUNDIALS has no memory");
             s::SUNContext_ClearErrHandlers(sundials);
         }
+        // a raw pointer, since C code keeps it while Rust code uses it too
         let context = Box::into_raw(Box::new(IdaContext {
             equations,
             n,
@@ -196,6 +212,7 @@ impl<E: DaeEquations> Ida<E> {
         Ok(ida)
     }
 
+    /// Makes all settings that do not change later.
     fn configure(&mut self, t: f64) -> Result<(), IdaFailure> {
         let roots = c_int::try_from(self.found.len()).expect("fewer than 2^31 crossings");
         // SAFETY: all objects are alive
@@ -207,6 +224,7 @@ impl<E: DaeEquations> Ida<E> {
                 s::IDASetLinearSolver(self.memory, self.solver, self.matrix),
                 s::IDASetJacFn(self.memory, Some(on_jacobian::<E>)),
                 if roots > 0 { s::IDARootInit(self.memory, roots, Some(on_crossings::<E>)) } else { 0 },
+                // after an event a root function may be exactly zero; the driver handles that itself
                 s::IDASetNoInactiveRootWarn(self.memory),
                 s::IDASetMaxConvFails(self.memory, MOST_FAILURES),
                 s::IDASetMaxErrTestFails(self.memory, MOST_FAILURES),
@@ -215,58 +233,60 @@ impl<E: DaeEquations> Ida<E> {
         }
     }
 
-    /// The equations.
+    /// The equations, to be changed between calls of [`Ida::advance`].
     pub fn equations(&mut self) -> &mut E {
         // SAFETY: the context is ours; no callback runs while `self` is borrowed here
         unsafe { &mut (*self.context).equations }
     }
 
-    /// Whether what the equations leave open may keep its value ([`Lu::may_keep`]).
+    /// Whether unknowns that the equations leave open may keep their value ([`Lu::may_keep`]).
     pub fn may_keep(&mut self, allowed: bool) {
         // SAFETY: the context is ours; no callback runs while `self` is borrowed here
         unsafe { (*self.context).lu.may_keep(allowed) }
     }
 
-    /// The same, to look at.
+    /// The equations, read only.
     pub fn watch(&self) -> &E {
         // SAFETY: the context is ours; it is only changed through `&mut self`
         unsafe { &(*self.context).equations }
     }
 
-    /// The values where the integrator stands.
+    /// The unknowns at the time last returned.
     pub fn y(&self) -> &[f64] {
         // SAFETY: only read while `self` is borrowed
         unsafe { slice(self.y, self.n) }
     }
 
-    /// The derivatives where the integrator stands.
+    /// The derivatives at the time last returned.
     pub fn yp(&self) -> &[f64] {
         // SAFETY: only read while `self` is borrowed
         unsafe { slice(self.yp, self.n) }
     }
 
-    /// Both, and the equations.
+    /// Equations, unknowns and derivatives together.
     pub fn parts(&mut self) -> (&mut E, &[f64], &[f64]) {
         // SAFETY: three distinct objects, borrowed as long as `self`
         unsafe { (&mut (*self.context).equations, slice(self.y, self.n), slice(self.yp, self.n)) }
     }
 
-    /// How far the corrector iterates, in tolerances; IDA's own choice is 0.33.
+    /// Sets how far the corrector iterates, as a part of the error tolerance. IDA's default is 0.33.
     pub fn set_corrector_tolerance(&mut self, part: f64) {
         // SAFETY: plain setter
         unsafe { s::IDASetNonlinConvCoef(self.memory, part) };
     }
 
-    /// From now on the error test leaves these unknowns out; the corrector solves for them as before. Without any, it is
-    /// about all of them again.
+    /// Leaves the marked unknowns out of the error test from now on. The corrector still solves for them.
+    ///
+    /// An empty slice, or one without `true`, tests all unknowns again.
     ///
     /// # Errors
-    /// [`IdaFailure::Code`] when SUNDIALS refuses the input.
+    /// [`IdaFailure::Code`] when SUNDIALS rejects the input.
     pub fn leave_out(&mut self, untested: &[bool]) -> Result<(), IdaFailure> {
         let some = untested.contains(&true);
         // SAFETY: the vectors are ours and not borrowed; IDA copies the marks
         unsafe {
             if some {
+                // IDA's id vector: 1 is differential, 0 is algebraic and left out
                 let marks = slice(self.scratch, self.n);
                 marks.iter_mut().zip(untested).for_each(|(mark, &out)| *mark = if out { 0.0 } else { 1.0 });
                 check(s::IDASetId(self.memory, self.scratch))?;
@@ -275,11 +295,12 @@ impl<E: DaeEquations> Ida<E> {
         }
     }
 
-    /// Forgets the past and starts again at `t` from these values.
+    /// Discards the past and starts again at `t` from these values, with order 1.
     ///
     /// # Errors
-    /// [`IdaFailure::Code`] when SUNDIALS refuses the input.
+    /// [`IdaFailure::Code`] when SUNDIALS rejects the input.
     pub fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), IdaFailure> {
+        // IDAReInit sets IDA's counters to zero, so ours are set to zero too
         self.before = self.work();
         // SAFETY: the vectors are ours and not borrowed; IDA copies them
         unsafe {
@@ -294,9 +315,10 @@ impl<E: DaeEquations> Ida<E> {
         }
     }
 
-    /// What one backward Euler step of length `h` from (`t`, `y`, `yp`) adds to its predictor `y + h yp`, to first
-    /// order, into `out`; false when it cannot be computed. Costs an evaluation, and a factorisation where rows do not
-    /// give their own derivative (`explicit` false).
+    /// The correction that a backward Euler step of length `h` adds to its predictor `y + h yp`, to first order.
+    ///
+    /// It estimates the second derivative: `restart` chooses the first step from it. It costs one residual, and a
+    /// factorization where `explicit` is false (rows do not give their own derivative). False when it is not finite.
     pub fn euler_correction(
         &mut self,
         t: f64,
@@ -312,6 +334,7 @@ impl<E: DaeEquations> Ida<E> {
         out.clear();
         out.resize(self.n, 0.0);
         context.residual_calls += 1;
+        // F = y' - f, so the correction of one Newton step is -h F with the identity as matrix
         if explicit {
             let done = context.equations.rate_residual(t + h, &predicted, yp, out) == EvaluationStatus::Done;
             out.iter_mut().for_each(|r| *r *= -h);
@@ -320,6 +343,7 @@ impl<E: DaeEquations> Ida<E> {
         if context.equations.residual(t + h, &predicted, yp, out) == EvaluationStatus::Retry {
             return false;
         }
+        // backward Euler: y' = (y - y0) / h, so cj = 1 / h
         context.jacobian_calls += 1;
         if context.equations.jacobian(t + h, 1.0 / h, &predicted, yp, val) == EvaluationStatus::Retry
             || context.lu.factor(val).is_err()
@@ -330,8 +354,9 @@ impl<E: DaeEquations> Ida<E> {
         context.lu.solve(out)
     }
 
-    /// The residual of the equations as they are now, at the end of the last step (which may lie beyond the time last
-    /// returned), into `out`; false when it is not finite.
+    /// The residual of the present equations at the end of the last step, which may lie behind the time last returned.
+    ///
+    /// After a root it shows whether the changed equations agree with that step. False when it is not finite.
     pub fn residual_ahead(&mut self, out: &mut Vec<f64>) -> bool {
         let t = self.internal_time();
         out.clear();
@@ -339,6 +364,7 @@ impl<E: DaeEquations> Ida<E> {
         // SAFETY: two vectors of our own that no one else borrows
         unsafe {
             let rate = s::N_VClone(self.scratch);
+            // IDAGetDky evaluates the interpolation polynomial (order 0) and its derivative (order 1)
             let known =
                 s::IDAGetDky(self.memory, t, 0, self.scratch) >= 0 && s::IDAGetDky(self.memory, t, 1, rate) >= 0;
             let context = &mut *self.context;
@@ -350,7 +376,7 @@ impl<E: DaeEquations> Ida<E> {
         }
     }
 
-    /// Unknowns and derivatives at a time within the last step; false where it lies outside.
+    /// Unknowns and derivatives at a time within the last step; false where the time lies outside.
     pub fn at(&mut self, t: f64, y: &mut Vec<f64>, yp: &mut Vec<f64>) -> bool {
         let mut known = true;
         for (order, out) in [(0, y), (1, yp)] {
@@ -364,47 +390,49 @@ impl<E: DaeEquations> Ida<E> {
         known
     }
 
-    /// The length of the first step after a start or restart; 0 lets IDA choose.
+    /// Sets the length of the first step after a start or restart, in seconds. 0 lets IDA choose.
     pub fn set_first_step(&mut self, h: f64) {
         // SAFETY: plain setter
         unsafe { s::IDASetInitStep(self.memory, h) };
     }
 
-    /// The longest step; 0 or infinity for no bound.
+    /// Sets the longest step in seconds; 0 or infinity for no limit.
     pub fn set_longest_step(&mut self, h: f64) {
         // SAFETY: plain setter
         unsafe { s::IDASetMaxStep(self.memory, if h.is_finite() { h } else { 0.0 }) };
     }
 
-    /// The shortest step: where a shorter one is needed, IDA gives up. Without a bound it would creep towards a
-    /// singularity for ever.
+    /// Sets the shortest step in seconds. IDA gives up where it needs a shorter one.
+    ///
+    /// Without a limit it would approach a singularity with ever shorter steps.
     pub fn set_shortest_step(&mut self, h: f64) {
         // SAFETY: plain setter
         unsafe { s::IDASetMinStep(self.memory, h) };
     }
 
-    /// A time that must not be passed.
+    /// Sets the time that IDA must not pass, in seconds.
     pub fn set_stop(&mut self, t: f64) {
         // SAFETY: plain setter
         unsafe { s::IDASetStopTime(self.memory, t) };
     }
 
-    /// Returns [`AdvanceReturn::Pause`] after so many steps within one call; 0 never does.
+    /// Makes [`Ida::advance`] return [`AdvanceReturn::Pause`] after this number of steps in one call; 0 never does.
     pub fn pause_after(&mut self, steps: u32) {
         // SAFETY: plain setter; a negative number means no limit
         unsafe { s::IDASetMaxNumSteps(self.memory, if steps == 0 { -1 } else { c_long::from(steps) }) };
     }
 
-    /// Integrates until `to`, the stop time or a root, whichever comes first; returns the time reached.
+    /// Integrates until `to`, the stop time or a root, whichever comes first; returns the time reached in seconds.
     ///
     /// # Errors
-    /// See [`IdaFailure`]; `y` and `yp` hold the last accepted values.
+    /// [`IdaFailure`] and the time reached. `y` and `yp` hold the last accepted values.
     pub fn advance(&mut self, to: f64) -> Result<(AdvanceReturn, f64), (IdaFailure, f64)> {
         let mut t = 0.0;
         // SAFETY: all objects are alive; callbacks reach the context through its own pointer while no reference to it
         // is held here
         let code = unsafe { s::IDASolve(self.memory, to, &raw mut t, self.y, self.yp, s::IDA_NORMAL) };
         match code {
+            // the order matters: all these codes but `IDA_TOO_MUCH_WORK` are positive and would match `0..`
             s::IDA_TSTOP_RETURN => Ok((AdvanceReturn::Stop, t)),
             s::IDA_ROOT_RETURN => Ok((AdvanceReturn::Root, t)),
             s::IDA_TOO_MUCH_WORK => Ok((AdvanceReturn::Pause, t)),
@@ -413,6 +441,7 @@ impl<E: DaeEquations> Ida<E> {
         }
     }
 
+    /// Translates a return code, using what the callbacks have recorded.
     fn failure(&mut self, code: c_int) -> IdaFailure {
         // SAFETY: no callback runs
         let context = unsafe { &mut *self.context };
@@ -420,6 +449,8 @@ impl<E: DaeEquations> Ida<E> {
             return IdaFailure::Panic(text);
         }
         match code {
+            // IDA may report an evaluation that is not finite as a corrector that did not converge: the callbacks'
+            // flags decide
             s::IDA_ERR_FAIL => IdaFailure::ErrorTest,
             s::IDA_REP_RES_ERR | s::IDA_FIRST_RES_FAIL => IdaFailure::NonFinite,
             _ if context.non_finite && context.singular.is_none() => IdaFailure::NonFinite,
@@ -431,7 +462,7 @@ impl<E: DaeEquations> Ida<E> {
         }
     }
 
-    /// Which crossing functions changed sign at the root just found: -1 falling, 1 rising, 0 not.
+    /// The directions of the crossing functions at the root just found: -1 falling, 1 rising, 0 no crossing.
     pub fn found(&mut self) -> &[c_int] {
         if !self.found.is_empty() {
             // SAFETY: the array has as many entries as there are functions
@@ -440,7 +471,7 @@ impl<E: DaeEquations> Ida<E> {
         &self.found
     }
 
-    /// The estimated local errors of the last step tried, each in units of its tolerance, into `out`.
+    /// Writes the estimated local error of the last attempted step, in units of the tolerance, one entry per unknown.
     pub fn weighted_errors(&mut self, out: &mut Vec<f64>) {
         out.clear();
         // SAFETY: the scratch vector is ours; IDA copies into it
@@ -455,7 +486,7 @@ impl<E: DaeEquations> Ida<E> {
         }
     }
 
-    /// What makes errors count as in the last step: the reciprocal tolerances times their shares, into `out`.
+    /// Writes the error weights of the last step: the reciprocal tolerances times their shares.
     pub fn weights(&mut self, out: &mut Vec<f64>) {
         out.clear();
         // SAFETY: as above
@@ -465,7 +496,7 @@ impl<E: DaeEquations> Ida<E> {
         }
     }
 
-    /// Length of the last step made and of the one to come.
+    /// Lengths of the last step and of the next one, in seconds.
     pub fn step_lengths(&self) -> (f64, f64) {
         let (mut last, mut next) = (0.0, 0.0);
         // SAFETY: plain getters
@@ -476,7 +507,7 @@ impl<E: DaeEquations> Ida<E> {
         (last, next)
     }
 
-    /// Order of the last step.
+    /// BDF order of the last step.
     pub fn order(&self) -> u32 {
         let mut order = 0;
         // SAFETY: plain getter
@@ -484,7 +515,7 @@ impl<E: DaeEquations> Ida<E> {
         order.unsigned_abs()
     }
 
-    /// How far the integrator has stepped; not before the time last returned.
+    /// The end of the last step in seconds. It is never before the time last returned.
     pub fn internal_time(&self) -> f64 {
         let mut t = 0.0;
         // SAFETY: plain getter
@@ -492,7 +523,7 @@ impl<E: DaeEquations> Ida<E> {
         t
     }
 
-    /// Work done since the beginning.
+    /// Work done since the integrator was created.
     pub fn work(&self) -> IntegratorCounters {
         let (mut steps, mut failures, mut convergence) = (0, 0, 0);
         // SAFETY: plain getters; the context is only read
@@ -530,6 +561,7 @@ impl<E: DaeEquations> Drop for Ida<E> {
     }
 }
 
+/// Turns a negative return code into an error; positive codes are warnings.
 fn check(code: c_int) -> Result<(), IdaFailure> {
     if code >= 0 { Ok(()) } else { Err(IdaFailure::Code(code)) }
 }

@@ -1,4 +1,8 @@
-//! Consistent values at the start: parameters, guesses, the initial system by damped Newton, homotopy where needed.
+//! Consistent initial values: parameters, guesses, the initial system, and homotopy where the model asks for it.
+//!
+//! `prepare` fills the slots with parameters and start values. `solve` then solves the blocks of the initial system by
+//! damped Newton (MLS 8.6). Where an expression contains `homotopy`, it follows the simplified system to the actual one
+//! (MLS 3.7.4). `check_starts` compares redundant fixed starts with the solution. The driver calls them in this order.
 
 use super::blocks::{BlockContext, BlockFailure, BlockWorkspace};
 use super::modes::CrossingModes;
@@ -11,16 +15,17 @@ use bramah_model::flat::{ElementOrigin, FlatEquation, OriginKind, ScalarType, Va
 use bramah_model::structure::{BltBlock, Dae, Unknown, places, starts};
 use bramah_syntax::diag::{Code, Diagnostic};
 
-/// A redundant fixed start may be off by this part of its size.
+/// Relative deviation that is allowed between a redundant fixed start and the solution.
 const CHECK_TOLERANCE: f64 = 1e-6;
 
-/// The shortest step of the homotopy parameter.
+/// The shortest step of the homotopy parameter, which goes from 0 to 1.
 const SMALLEST_STEP: f64 = 1e-4;
 
-/// Parameters as the settings say, and start values as guesses in all other variables.
+/// A fresh array of values with the parameters of the settings, and start values as guesses for all other variables.
 pub fn prepare(system: &ExecutableSystem, settings: &Settings) -> Vec<f64> {
     let mut values = system.layout.values();
     let mut overridden = vec![false; if settings.parameters.is_empty() { 0 } else { system.dae.variables.len() }];
+    // a parameter of the settings replaces its binding
     for &(v, value) in &settings.parameters {
         values[system.layout.var(v)] = value;
         overridden[v.index()] = true;
@@ -31,8 +36,9 @@ pub fn prepare(system: &ExecutableSystem, settings: &Settings) -> Vec<f64> {
     values
 }
 
-/// Values given from outside must satisfy what is asserted of parameters, before anything is computed from them; those
-/// of the model itself were judged with its structure.
+/// Checks the assertions about parameters alone, when the settings give parameters.
+///
+/// Assertions with the model's own parameters were checked when its structure was analyzed.
 ///
 /// # Errors
 /// The first assertion that does not hold (E503).
@@ -51,6 +57,9 @@ pub fn check_parameters(system: &ExecutableSystem, settings: &Settings, values: 
     }
 }
 
+/// Writes start values into the slots of all variables that are no known parameters, and into their `pre` slots.
+///
+/// Parameters with `fixed = false` are unknowns of the initial system and get a guess too.
 fn guess(system: &ExecutableSystem, values: &mut [f64]) {
     for (v, variable) in (0..).map(VarId).zip(&system.dae.variables) {
         let free = system.dae.free_parameters.contains(&v);
@@ -58,6 +67,7 @@ fn guess(system: &ExecutableSystem, values: &mut [f64]) {
             continue;
         }
         let value = system.start(v, values).filter(|s| s.is_finite()).unwrap_or_else(|| {
+            // without `start`: 0, or the first literal of an enumeration, moved between `min` and `max`
             let nothing = if matches!(variable.ty, ScalarType::Enumeration(_)) { 1.0_f64 } else { 0.0 };
             let nothing = system.min(v, values).map_or(nothing, |min| nothing.max(min));
             system.max(v, values).map_or(nothing, |max| nothing.min(max))
@@ -73,7 +83,7 @@ fn guess(system: &ExecutableSystem, values: &mut [f64]) {
 /// Solves the initial system from the guesses in `values`.
 ///
 /// # Errors
-/// What could not be solved; `values` is where it failed.
+/// The block that could not be solved. `values` then holds the point of the failure.
 pub fn solve(
     system: &ExecutableSystem,
     scales: &VariableScales,
@@ -85,7 +95,7 @@ pub fn solve(
     let mut start =
         InitialSystemSolver { system, scales, modes, blocks: BlockWorkspace::new(&system.initial, scales, modes) };
     let guesses = values.to_vec();
-    // the root that the model asks for is the one that the simplified equations lead to (MLS 3.7.4)
+    // where the model gives a homotopy, it decides to which of several roots the start belongs (MLS 3.7.4)
     let followed = worth_homotopy(&system.dae) && start.homotopy(values, &guesses).is_ok();
     let result = if followed {
         Ok(())
@@ -95,26 +105,30 @@ pub fn solve(
         start.run(values)
     };
     let result = match result {
+        // only a Newton iteration that did not converge can profit from other guesses
         Err(BlockFailure::Loop(failure)) if failure.reason == NewtonFailureReason::NoConvergence => {
             let failed = values.to_vec();
             start.elsewhere(&failure, values, &guesses).map_err(|_| {
+                // the message must show the point at which the model's own guesses failed
                 values.copy_from_slice(&failed);
                 BlockFailure::Loop(failure)
             })
         }
         other => other,
     };
+    // from here on the run sees the actual system, without `initial()`
     values[ValueLayout::LAMBDA] = 1.0;
     values[ValueLayout::INITIAL] = 0.0;
     modes.after = true;
     result
 }
 
-/// Fixed starts that constraints have made redundant must agree with what the others lead to; where others do not, a
-/// warning says so.
+/// Compares fixed starts that constraints have made redundant with the solution.
+///
+/// Returns warnings for starts that are only guesses.
 ///
 /// # Errors
-/// The first fixed one that does not (E401).
+/// The first start with `fixed = true` that contradicts the others (E401).
 pub fn check_starts(
     system: &ExecutableSystem,
     scales: &VariableScales,
@@ -124,6 +138,7 @@ pub fn check_starts(
     for &(residual, equation) in &system.dae.initial_checks {
         let equation = &system.dae.equations[equation as usize];
         let (found, asked) = (system.eval(equation.lhs, values), system.eval(equation.rhs, values));
+        // the nominal value keeps the allowed deviation above zero for values near zero
         let nominal = match system.dae.exprs.node(equation.lhs) {
             ExprNode::Var(v) | ExprNode::Der(v) => scales.nominal[v.index()],
             // the terms of a sum cancel
@@ -140,8 +155,7 @@ pub fn check_starts(
     Ok(missed)
 }
 
-/// The variable whose start a check is, where that is not `fixed` beside one that is: a guess, as the language has it
-/// (MLS 8.6).
+/// The variable of a check whose start is only a guess, because other starts are fixed (MLS 8.6). `None` otherwise.
 fn guessed(dae: &Dae, equation: &FlatEquation) -> Option<VarId> {
     match dae.exprs.node(equation.lhs) {
         ExprNode::Var(v) if equation.origin.kind == OriginKind::Guess => Some(v),
@@ -149,6 +163,9 @@ fn guessed(dae: &Dae, equation: &FlatEquation) -> Option<VarId> {
     }
 }
 
+/// The warning that a variable does not start at its `start`, which was only a guess.
+///
+/// `found` is its value and `asked` its `start`, both in its unit.
 fn missed_start(system: &ExecutableSystem, v: VarId, equation: &FlatEquation, found: f64, asked: f64) -> Diagnostic {
     let dae = &system.dae;
     let name = dae.text(equation.lhs);
@@ -165,13 +182,16 @@ fn missed_start(system: &ExecutableSystem, v: VarId, equation: &FlatEquation, fo
     }
 }
 
-/// The largest value of a variable that an equation reads.
+/// The largest absolute value of a variable that an equation reads: a scale for sums whose terms cancel.
 fn terms(system: &ExecutableSystem, equation: &FlatEquation, values: &[f64]) -> f64 {
     let dae = &system.dae;
     let read = [equation.lhs, equation.rhs].into_iter().flat_map(|e| dae.exprs.variables(e));
     read.map(|v| values[system.layout.var(v)].abs()).fold(0.0, f64::max)
 }
 
+/// E401: a fixed start contradicts the other starts and the constraints.
+///
+/// `found` is the value that follows from the others, `asked` the fixed one. The help names modifiers that resolve it.
 fn contradiction(system: &ExecutableSystem, equation: &FlatEquation, found: f64, asked: f64) -> Diagnostic {
     let dae = &system.dae;
     let name = dae.text(equation.lhs);
@@ -192,23 +212,35 @@ fn contradiction(system: &ExecutableSystem, equation: &FlatEquation, found: f64,
     if ways.is_empty() { made.help("free one of these starts") } else { made.help(ways.join("; or ")) }
 }
 
+/// Whether the model uses `homotopy` and the initial system has a loop in which it can matter.
+///
+/// Without a loop, every unknown is assigned explicitly and there is only one solution.
 fn worth_homotopy(dae: &Dae) -> bool {
     let is_homotopy = |e: u32| matches!(dae.exprs.node(ExprId(e)), ExprNode::Homotopy(..));
     let loops = dae.initial.iter().any(|b| !matches!(b, BltBlock::Assign(_)));
     loops && (0..u32::try_from(dae.exprs.len()).unwrap_or(0)).any(is_homotopy)
 }
 
+/// The initial system and what is needed to solve it.
 struct InitialSystemSolver<'a> {
+    /// The lowered model.
     system: &'a ExecutableSystem,
+    /// Sizes and bounds of all variables.
     scales: &'a VariableScales,
+    /// Corrections of the modes of crossings.
     modes: &'a CrossingModes,
+    /// Workspace of the blocks of the initial system.
     blocks: BlockWorkspace,
 }
 
 impl InitialSystemSolver<'_> {
+    /// Solves all blocks in order from the values in the slots, then dependent parameters and aliases.
+    ///
+    /// `Err` with the first block that fails.
     fn run(&mut self, values: &mut [f64]) -> Result<(), BlockFailure> {
         let setting = BlockContext { system: self.system, scales: self.scales, modes: self.modes };
         self.blocks.run(&self.system.initial, &setting, values)?;
+        // parameters with `fixed = false` were unknowns; those that depend on them follow now
         if !self.system.dae.free_parameters.is_empty() {
             self.system.parameters_changed(values);
         }
@@ -216,14 +248,18 @@ impl InitialSystemSolver<'_> {
         Ok(())
     }
 
-    /// From other beginnings of the unknowns of a loop that was not solved: their nominal values, ten times these, a
-    /// tenth. A pressure without a `start` begins at that of its connector, which may be far from where it has to be.
+    /// Tries other guesses for the unknowns of a loop that was not solved: nominal values, ten times these, and a
+    /// tenth.
+    ///
+    /// A pressure without `start` begins at the value of its connector, which may be far from the solution. `Err` with
+    /// the last failure when all guesses fail.
     fn elsewhere(&mut self, failure: &NewtonFailure, values: &mut [f64], guesses: &[f64]) -> Result<(), BlockFailure> {
         let mut last = Ok(());
         for part in [1.0, 10.0, 0.1] {
             values.copy_from_slice(guesses);
             values[ValueLayout::LAMBDA] = 1.0;
             for &(unknown, ..) in &failure.unknowns {
+                // a derivative has no nominal value of its own
                 let Unknown::Var(v) = unknown else { continue };
                 let i = v.index();
                 let guess = part * self.scales.nominal[i];
@@ -237,7 +273,10 @@ impl InitialSystemSolver<'_> {
         last
     }
 
-    /// From the simplified system to the actual one in steps that grow while they succeed.
+    /// Follows the solution from the simplified system (parameter 0) to the actual one (parameter 1).
+    ///
+    /// The step doubles after a success and is halved after a failure, which starts again from the last solution. `Err`
+    /// when the simplified system has no solution, or when the step becomes too small.
     fn homotopy(&mut self, values: &mut [f64], guesses: &[f64]) -> Result<(), BlockFailure> {
         values.copy_from_slice(guesses);
         values[ValueLayout::LAMBDA] = 0.0;

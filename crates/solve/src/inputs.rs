@@ -1,4 +1,7 @@
-//! Recorded inputs: held (each step is an event) or linear between samples (each sample is a kink that steps respect).
+//! Recorded inputs: held between samples (each step is an event) or linear (each sample is a kink that steps respect).
+//!
+//! The caller gives [`RecordedInput`]s. [`InputPlayback`] writes their values into slots during a run, and names the
+//! times at which the integrator must stop. It contains the delayed values too, which are inputs of the same kind.
 
 use super::modes::same_time;
 use super::past::DelayBuffers;
@@ -8,7 +11,7 @@ use bramah_model::structure::Dae;
 use bramah_syntax::diag::{Code, Diagnostic};
 use std::sync::Arc;
 
-/// How an input runs between its samples.
+/// The value of an input between its samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Interpolation {
     /// The value of a sample holds until the next one.
@@ -18,22 +21,24 @@ pub enum Interpolation {
     Linear,
 }
 
-/// A recorded input. Before the first sample its value holds, after the last one too.
+/// A recorded input. Before its first sample it has the first value, after the last sample the last value.
 #[derive(Clone, Debug)]
 pub struct RecordedInput {
     /// The input variable.
     pub variable: VarId,
-    /// Times of the samples in seconds, none before the last one; may be shared between inputs. Of several samples at one time
-    /// the first is where the input arrives, the last where it goes on from.
+    /// Times of the samples in seconds, ascending; may be shared between inputs.
+    ///
+    /// Of several samples at one time, the first is the value just before that time, the last the value just after.
     pub times: Arc<[f64]>,
-    /// Values, in the variable's unit, as many as times.
+    /// Values in the unit of the variable, as many as times.
     pub values: Arc<[f64]>,
-    /// Between samples.
+    /// How values between samples are found.
     pub interpolation: Interpolation,
 }
 
-/// E106 for each input of the model that has neither a trajectory nor a value of its own; `help` says what to do about the
-/// one of this name.
+/// E106 for each input of the model that has neither a recording nor a value of its own.
+///
+/// `help` gives the lines of help for an input of this name.
 pub fn missing_inputs(dae: &Dae, inputs: &[RecordedInput], help: impl Fn(&str) -> Vec<String>) -> Vec<Diagnostic> {
     let said = |v: &VarId| {
         let variable = &dae.variables[v.index()];
@@ -48,12 +53,12 @@ pub fn missing_inputs(dae: &Dae, inputs: &[RecordedInput], help: impl Fn(&str) -
 }
 
 impl RecordedInput {
-    /// An input that holds each sample.
+    /// An input that holds each sample until the next one.
     pub fn held(variable: VarId, times: impl Into<Arc<[f64]>>, values: impl Into<Arc<[f64]>>) -> Self {
         RecordedInput { variable, times: times.into(), values: values.into(), interpolation: Interpolation::Held }
     }
 
-    /// An input that runs straight between samples.
+    /// An input that is linear between samples.
     pub fn linear(variable: VarId, times: impl Into<Arc<[f64]>>, values: impl Into<Arc<[f64]>>) -> Self {
         RecordedInput { variable, times: times.into(), values: values.into(), interpolation: Interpolation::Linear }
     }
@@ -62,24 +67,29 @@ impl RecordedInput {
 /// All recorded inputs during a run.
 #[derive(Clone, Debug, Default)]
 pub struct InputPlayback {
+    /// The inputs with at least one sample.
     tracks: Vec<InputTrack>,
+    /// Whether one of them is linear; held ones need no update between events.
     any_linear: bool,
     /// Delayed values: inputs that the run itself records.
     pub delays: DelayBuffers,
 }
 
+/// One recorded input with its position.
 #[derive(Clone, Debug)]
 struct InputTrack {
+    /// The samples.
     input: RecordedInput,
+    /// The slot of the input.
     slot: usize,
-    /// The derivative's slot, if the model uses it.
+    /// The slot of its derivative; `None` where the model does not use it.
     der: Option<usize>,
-    /// The last sample at or before the present time.
+    /// Index of the last sample at or before the present time.
     at: usize,
 }
 
 impl InputPlayback {
-    /// Inputs without samples are ignored.
+    /// Prepares the playback. Inputs without samples are ignored.
     pub fn new(inputs: &[RecordedInput], layout: &ValueLayout) -> Self {
         let tracks: Vec<InputTrack> = inputs
             .iter()
@@ -95,7 +105,7 @@ impl InputPlayback {
         InputPlayback { tracks, any_linear, delays: DelayBuffers::default() }
     }
 
-    /// Moves to time `t` (which may lie anywhere) and sets the values that hold just after it.
+    /// Moves to time `t`, which may lie anywhere, and sets the values that hold just after it.
     pub fn seek(&mut self, t: f64, values: &mut [f64]) {
         for track in &mut self.tracks {
             let times = &track.input.times;
@@ -105,19 +115,19 @@ impl InputPlayback {
         self.delays.seek(t, values);
     }
 
-    /// An input that is set from outside from here on.
+    /// Stops the playback of the input with this slot, because the caller sets it from now on.
     pub fn release(&mut self, slot: usize) {
         self.tracks.retain(|track| track.slot != slot);
     }
 
-    /// Sets all values at `t`, between the samples where the playback stands.
+    /// Sets all values at `t`, between the samples at the present position.
     pub fn set(&self, t: f64, values: &mut [f64]) {
         for track in &self.tracks {
             track.set(t, values);
         }
     }
 
-    /// Sets the values of linear inputs and delays at `t`; held ones keep theirs.
+    /// Sets the values of linear inputs and delays at `t`. Held inputs keep their values.
     pub fn follow(&self, t: f64, values: &mut [f64]) {
         self.delays.follow(t, values);
         if self.any_linear {
@@ -127,23 +137,25 @@ impl InputPlayback {
         }
     }
 
-    /// The next time after `t` at which an input or a delayed value jumps.
+    /// The next time after `t` at which an input or a delayed value jumps; infinite when there is none.
     pub fn next_jump(&self, t: f64) -> f64 {
         self.next(t, InputTrack::jumps).min(self.delays.next_jump(t))
     }
 
-    /// The next time after `t` at which a linear input or a delayed value bends.
+    /// The next time after `t` at which a linear input or a delayed value has a kink; infinite when there is none.
     pub fn next_kink(&self, t: f64) -> f64 {
         let linear = if self.any_linear { self.next(t, InputTrack::bends) } else { f64::INFINITY };
         linear.min(self.delays.next_bend(t))
     }
 
+    /// The earliest next change of all inputs.
     fn next(&self, t: f64, changes: impl Fn(&InputTrack, usize) -> bool) -> f64 {
         self.tracks.iter().map(|track| track.next_change(t, &changes)).fold(f64::INFINITY, f64::min)
     }
 }
 
 impl InputTrack {
+    /// Writes value and derivative at `t` into their slots.
     fn set(&self, t: f64, values: &mut [f64]) {
         let (times, samples) = (&self.input.times, &self.input.values);
         let (value, slope) = match self.input.interpolation {
@@ -156,7 +168,7 @@ impl InputTrack {
         }
     }
 
-    /// Whether the value changes at sample `k`: of a linear input where there are two samples at one time.
+    /// Whether the value jumps at sample `k`. A linear input jumps where two samples have the same time.
     fn jumps(&self, k: usize) -> bool {
         let (times, samples) = (&self.input.times, &self.input.values);
         match self.input.interpolation {
@@ -165,12 +177,12 @@ impl InputTrack {
         }
     }
 
-    /// Whether the slope may change at sample `k`.
+    /// Whether the slope may change at a sample.
     fn bends(&self, _: usize) -> bool {
         self.input.interpolation == Interpolation::Linear
     }
 
-    /// The time of the next sample at which something changes.
+    /// The time of the next sample after `t` at which something changes; infinite when there is none.
     fn next_change(&self, t: f64, changes: &impl Fn(&InputTrack, usize) -> bool) -> f64 {
         let times = &self.input.times;
         let next = (self.at + 1..times.len()).find(|&k| changes(self, k) && times[k] > t && !same_time(times[k], t));
@@ -178,7 +190,7 @@ impl InputTrack {
     }
 }
 
-/// Value and slope on the line that starts at sample `at`; constant outside the samples.
+/// Value and slope of the line that starts at sample `at`. Constant before the first and after the last sample.
 fn line(times: &[f64], samples: &[f64], at: usize, t: f64) -> (f64, f64) {
     if t < times[0] {
         return (samples[0], 0.0);

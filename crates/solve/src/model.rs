@@ -1,4 +1,6 @@
-//! A lowered system with its values, as IDA sees it.
+//! A lowered system together with its values, as the equations that IDA integrates.
+//!
+//! [`IntegrationModel`] is owned by `Ida`. It updates recorded inputs and delays before each evaluation.
 
 use super::ida::{DaeEquations, EvaluationStatus};
 use super::inputs::InputPlayback;
@@ -6,24 +8,25 @@ use super::modes::RootFunctions;
 use super::tangents::ResidualDerivatives;
 use crate::lower::ExecutableSystem;
 
-/// One run's values, and what changes them while the integrator steps.
+/// The values of one run, and what changes them while the integrator steps.
 #[derive(Clone, Debug)]
 pub struct IntegrationModel<'a> {
     /// The equations.
     pub system: &'a ExecutableSystem,
-    /// All slots.
+    /// All slots; see `ValueLayout`.
     pub values: Vec<f64>,
     /// The functions watched for sign changes.
     pub roots: RootFunctions,
-    /// Recorded inputs.
+    /// Recorded inputs and delayed values.
     pub playback: InputPlayback,
-    /// Where the equations last had no finite value: time, y, y'.
+    /// Where the equations last had no finite value: time, y, y'. Messages are made from it.
     pub trap: Option<(f64, Vec<f64>, Vec<f64>)>,
-    /// Derivatives of the equations where they were last asked for.
+    /// dF/dy and dF/dy' where they were last computed for sensitivities; `None` without sensitivities.
     pub slopes: Option<Box<ResidualDerivatives>>,
 }
 
 impl IntegrationModel<'_> {
+    /// Records the point of an evaluation that is not finite.
     fn judge<E>(&mut self, result: Result<(), E>, t: f64, y: &[f64], yp: &[f64]) -> EvaluationStatus {
         match result {
             Ok(()) => EvaluationStatus::Done,
@@ -34,25 +37,25 @@ impl IntegrationModel<'_> {
         }
     }
 
-    /// Puts time, unknowns and recorded inputs into their slots.
+    /// Writes time, unknowns and recorded inputs into their slots.
     pub fn load(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.playback.follow(t, &mut self.values);
         self.system.load(t, y, yp, &mut self.values);
     }
 
-    /// One of the unshifted crossings at these unknowns.
+    /// One of the unshifted crossing functions at these unknowns, with the explicit variables that it needs.
     pub fn raw_crossing(&mut self, t: f64, y: &[f64], yp: &[f64], raw: usize) -> f64 {
         self.playback.follow(t, &mut self.values);
         self.system.crossings(t, y, yp, &mut self.values, self.roots.raw());
         self.roots.raw()[raw]
     }
 
-    /// The delayed expressions, from the slots as they are.
+    /// The delayed expressions, evaluated from the slots.
     pub fn sources(&self) -> Vec<f64> {
         self.playback.delays.sources(self.system, &self.values)
     }
 
-    /// Fills the slots of all variables.
+    /// Computes all variables at these unknowns into their slots.
     pub fn observe(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.playback.follow(t, &mut self.values);
         self.system.observe(t, y, yp, &mut self.values);
@@ -60,6 +63,7 @@ impl IntegrationModel<'_> {
 }
 
 impl DaeEquations for IntegrationModel<'_> {
+    /// Evaluates the residual after recorded inputs and delays have been set for `t`. Records the point where it fails.
     fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus {
         if self.system.columns.is_empty() {
             // the constant that stands in for a system without unknowns
@@ -71,6 +75,7 @@ impl DaeEquations for IntegrationModel<'_> {
         self.judge(result, t, y, yp)
     }
 
+    /// As `residual`, with rows `y' - f` for as many unknowns as possible.
     fn rate_residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> EvaluationStatus {
         if self.system.columns.is_empty() {
             return self.residual(t, y, yp, r);
@@ -80,6 +85,7 @@ impl DaeEquations for IntegrationModel<'_> {
         self.judge(result, t, y, yp)
     }
 
+    /// Evaluates the Jacobian in the order of the system's pattern.
     fn jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], val: &mut [f64]) -> EvaluationStatus {
         if self.system.columns.is_empty() {
             val[0] = cj;
@@ -90,6 +96,7 @@ impl DaeEquations for IntegrationModel<'_> {
         self.judge(result, t, y, yp)
     }
 
+    /// Evaluates the shifted root functions, one entry per function.
     fn crossings(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]) {
         self.playback.follow(t, &mut self.values);
         self.system.crossings(t, y, yp, &mut self.values, self.roots.raw());

@@ -1,46 +1,53 @@
-//! Modes: the discrete stand-ins of relations, `floor` and time relations, and which side of zero they say.
+//! Modes of crossings and the root functions given to IDA.
 //!
-//! A relation `a > b` is watched through `d = a - b`. IDA disables a root function that is exactly zero after a restart,
-//! and results would be silently wrong. So the function given to IDA is `d` shifted beyond the threshold, away from the
-//! present side: never zero after a restart, and when IDA reports the root, `d` has really changed its side.
+//! A mode is the discrete variable that stands for a relation, a `floor` or a relation of time between events. A
+//! relation `a > b` is watched through `d = a - b`. IDA disables a root function that is exactly zero after a restart,
+//! and results would be silently wrong. The function given to IDA is therefore `d`, shifted beyond the threshold, away
+//! from the present side. It is never zero after a restart, and when IDA reports a root, `d` has really changed its
+//! side.
 
 use crate::lower::{ExecutableSystem, ValueLayout};
 use bramah_expr::{ExprId, RelationalOp, VarId};
 use bramah_model::structure::{BltBlock, CrossingKind, Dae, ExplicitAssignment, Unknown, ZeroCrossing};
 use rustc_hash::FxHashSet;
 
-/// Shift of root functions beyond the threshold, in units of the sides' size.
+/// Shift of root functions beyond the threshold, in units of the size of the difference.
 const SHIFT: f64 = 1e-12;
-/// The shift where both sides have always been zero.
+/// The shift where the difference has always been zero.
 const SMALLEST_SHIFT: f64 = 1e-300;
-/// Error of the solution, in tolerances: what IDA has seen cross may lie so far on the old side.
+/// Error of the solution in tolerances: at a root reported by IDA the difference may be this far on the old side.
 const NEAR: f64 = 10.0;
-/// A time event is reached when time is this close, relative to the larger of both.
+/// Two times are the same when they differ by less than this part of the larger one.
 const SAME_TIME: f64 = 1e-12;
+/// The variable is no mode.
 const NONE: u32 = u32::MAX;
 
-/// Whether two times are the same up to rounding.
+/// Whether two finite times are the same up to rounding.
 pub fn same_time(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() <= SAME_TIME * a.abs().max(b.abs()) && a.is_finite() && b.is_finite()
 }
 
-/// The state of all crossings.
+/// The state of all crossings. Vectors are indexed like `Dae::crossings`, if not stated otherwise.
 #[derive(Clone, Debug)]
 pub struct CrossingModes {
+    /// For each variable the crossing that it is the mode of, or `NONE`.
     crossing_of: Vec<u32>,
+    /// The slot of each mode.
     slots: Vec<usize>,
-    /// A value that a crossing keeps during an event because IDA has seen it cross; NaN for none.
+    /// The value that a mode keeps during an event because IDA has seen it cross; NaN where there is none.
     forced: Vec<f64>,
+    /// Whether an entry of `forced` is set.
     any_forced: bool,
-    /// The largest difference seen so far, for the size of the shift.
+    /// The largest absolute difference seen so far, from which the shift follows.
     size: Vec<f64>,
+    /// Relative tolerance of the run.
     tolerance: f64,
-    /// True at events (time relations hold as just after the event), false in the initial system.
+    /// Whether relations of time hold as just after the event. True at events, false in the initial system.
     pub after: bool,
 }
 
 impl CrossingModes {
-    /// No crossing forced.
+    /// All crossings, none of them forced.
     pub fn new(system: &ExecutableSystem, tolerance: f64) -> Self {
         let crossings = &system.dae.crossings;
         let mut crossing_of = vec![NONE; system.dae.variables.len()];
@@ -58,13 +65,13 @@ impl CrossingModes {
         }
     }
 
-    /// The crossing that a variable is the mode of.
+    /// The crossing that a variable is the mode of; `None` where it is no mode.
     pub fn crossing(&self, v: VarId) -> Option<u32> {
         let c = self.crossing_of[v.index()];
         (c != NONE).then_some(c)
     }
 
-    /// Gives a crossing the value it has just crossed to.
+    /// Gives a crossing the value to which IDA has seen it cross; `direction` is 1 or -1.
     pub fn force(&mut self, system: &ExecutableSystem, crossing: usize, direction: i32, values: &[f64]) {
         let now = values[self.slots[crossing]];
         self.forced[crossing] = match system.dae.crossings[crossing].kind {
@@ -80,17 +87,17 @@ impl CrossingModes {
         self.any_forced = true;
     }
 
-    /// Whether a crossing keeps what IDA has seen.
+    /// Whether a crossing has a forced value.
     pub fn forces(&self) -> bool {
         self.any_forced
     }
 
-    /// Whether the event ended with a crossing on the side from which IDA had seen it leave.
+    /// Whether a crossing ended the event with another value than its forced one.
     pub fn refused(&self, values: &[f64]) -> bool {
         self.any_forced && self.forced.iter().zip(&self.slots).any(|(f, &s)| !f.is_nan() && *f != values[s])
     }
 
-    /// Ends the event.
+    /// Removes all forced values, at the end of an event.
     pub fn release(&mut self) {
         if self.any_forced {
             self.forced.fill(f64::NAN);
@@ -98,7 +105,10 @@ impl CrossingModes {
         }
     }
 
-    /// The mode of a crossing given the value its equation has just computed.
+    /// The mode of a crossing, given the value that its equation has just computed.
+    ///
+    /// A forced value replaces it within the error of the solution, and a relation of time holds as just after its
+    /// time.
     pub fn correct(&self, system: &ExecutableSystem, crossing: u32, computed: f64, values: &[f64]) -> f64 {
         let c = crossing as usize;
         match system.dae.crossings[c].kind {
@@ -108,11 +118,13 @@ impl CrossingModes {
             }
             CrossingKind::Relation(_, left, right) if self.wants(c, computed) => {
                 let (left, right) = (system.eval(left, values), system.eval(right, values));
+                // the sides themselves count too: their difference has rounding error of their size
                 let size = self.size[c].max(left.abs()).max(right.abs());
                 self.keep(c, computed, (left - right).abs(), size)
             }
             CrossingKind::Floor(argument) if self.wants(c, computed) => {
                 let argument = system.eval(argument, values);
+                // distance to the nearer bound of the interval of the forced value
                 let distance = (argument - self.forced[c]).abs().min((argument - self.forced[c] - 1.0).abs());
                 self.keep(c, computed, distance, argument.abs().max(1.0))
             }
@@ -120,30 +132,32 @@ impl CrossingModes {
         }
     }
 
+    /// Whether a forced value differs from the computed one.
     fn wants(&self, c: usize, computed: f64) -> bool {
         self.any_forced && !self.forced[c].is_nan() && self.forced[c] != computed
     }
 
-    /// The forced value while the difference is within the error of the solution.
+    /// The forced value while the difference is within the error of the solution, else the computed one.
     fn keep(&self, c: usize, computed: f64, distance: f64, size: f64) -> f64 {
         if distance <= NEAR * self.tolerance * size { self.forced[c] } else { computed }
     }
 
-    /// Takes note of a difference, for the size of a crossing.
+    /// Records a difference for the size of a crossing.
     pub fn seen(&mut self, crossing: usize, difference: f64) {
         if difference.is_finite() {
             self.size[crossing] = self.size[crossing].max(difference.abs());
         }
     }
 
-    /// Whether a difference is within the error of the solution, as far as its sizes so far tell.
+    /// Whether a difference is within the error of the solution, according to the differences seen so far.
     pub fn near(&self, crossing: usize, difference: f64) -> bool {
         difference.abs() <= NEAR * self.tolerance * self.size[crossing]
     }
 }
 
-/// Whether a crossing is a function of time that no state follows: no error test sees it, and a long step could hold two
-/// of its roots.
+/// Whether a crossing depends on time in a way that no state follows.
+///
+/// The error test does not see such a function, and a long step could contain two of its roots.
 pub fn follows_time(dae: &Dae) -> bool {
     let watched = |c: &ZeroCrossing| match c.kind {
         CrossingKind::Relation(_, left, right) => Some([left, right]),
@@ -155,6 +169,7 @@ pub fn follows_time(dae: &Dae) -> bool {
         return false;
     }
     let mut moved: FxHashSet<VarId> = dae.delays.iter().map(|d| d.variable).collect();
+    // time itself, a delayed value, or an explicit variable made of these
     let moves = |e: ExprId, moved: &FxHashSet<VarId>| {
         let on = dae.exprs.dependencies(&[e]);
         on.time || on.vars.iter().any(|v| moved.contains(v))
@@ -169,7 +184,7 @@ pub fn follows_time(dae: &Dae) -> bool {
     watched.iter().any(|&e| moves(e, &moved))
 }
 
-/// A time relation just after the time it compares with.
+/// Whether a relation of time holds just after the time that it compares with.
 pub fn after(rel: RelationalOp) -> bool {
     matches!(rel, RelationalOp::Gt | RelationalOp::Ge | RelationalOp::Ne)
 }
@@ -177,10 +192,13 @@ pub fn after(rel: RelationalOp) -> bool {
 /// The root functions given to IDA: one for each relation, two for each `floor`.
 #[derive(Clone, Debug, Default)]
 pub struct RootFunctions {
+    /// The functions, in the order of IDA.
     functions: Vec<RootFunction>,
+    /// The unshifted differences, one per entry of `ExecutableSystem::root_crossings`.
     raw: Vec<f64>,
 }
 
+/// One root function: `raw - base + shift`.
 #[derive(Clone, Copy, Debug)]
 struct RootFunction {
     /// Index into `ExecutableSystem::root_crossings`.
@@ -189,14 +207,14 @@ struct RootFunction {
     crossing: usize,
     /// Subtracted: 0 for relations, a bound of the present interval for `floor`.
     base: f64,
-    /// Added: away from the present side.
+    /// Added: away from zero, on the present side.
     shift: f64,
-    /// For `floor`: the lower bound (false) or the upper one (true).
+    /// For `floor`: whether it watches the upper bound.
     upper: bool,
 }
 
 impl RootFunctions {
-    /// For all crossings that need them.
+    /// The root functions of all crossings that need one.
     pub fn new(system: &ExecutableSystem) -> Self {
         let mut functions = Vec::new();
         for (raw, &crossing) in system.root_crossings.iter().enumerate() {
@@ -209,17 +227,17 @@ impl RootFunctions {
         RootFunctions { functions, raw: vec![0.0; system.root_crossings.len()] }
     }
 
-    /// How many.
+    /// Number of root functions.
     pub fn len(&self) -> usize {
         self.functions.len()
     }
 
-    /// True when there is none.
+    /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.functions.is_empty()
     }
 
-    /// The crossing behind a function.
+    /// The crossing behind a function, as an index into `Dae::crossings`.
     pub fn crossing(&self, function: usize) -> usize {
         self.functions[function].crossing
     }
@@ -229,7 +247,7 @@ impl RootFunctions {
         self.functions[function].raw
     }
 
-    /// What is added to the difference behind a function: positive where it is watched from above.
+    /// The shift of a function: positive where the difference is watched from above.
     pub fn shift(&self, function: usize) -> f64 {
         self.functions[function].shift
     }
@@ -239,14 +257,16 @@ impl RootFunctions {
         &mut self.raw
     }
 
-    /// The function values from the raw differences.
+    /// Computes the functions from the unshifted differences.
     pub fn write(&self, g: &mut [f64]) {
         for (g, f) in g.iter_mut().zip(&self.functions) {
             *g = self.raw[f.raw] - f.base + f.shift;
         }
     }
 
-    /// After a start or event: shifts each function so that it lies on the side its mode says.
+    /// After a start or event: shifts each function so that it lies on the side that its mode says.
+    ///
+    /// The unshifted differences must be up to date.
     pub fn settle(&mut self, system: &ExecutableSystem, modes: &mut CrossingModes, values: &[f64]) {
         for f in &mut self.functions {
             let mode = values[modes.slots[f.crossing]];
@@ -261,12 +281,13 @@ impl RootFunctions {
             let d = self.raw[f.raw] - f.base;
             modes.seen(f.crossing, d);
             let shift = SHIFT * modes.size[f.crossing].max(f.base.abs()) + SMALLEST_SHIFT;
+            // where the difference lies on the wrong side, it is mirrored to the right one
             f.shift = side * if d * side < 0.0 { 2.0 * d.abs() + shift } else { shift };
         }
     }
 }
 
-/// The side of zero on which `left - right` lies, given whether the relation holds.
+/// The side of zero on which `left - right` lies (1 or -1), given whether the relation holds.
 fn side(rel: RelationalOp, holds: bool, difference: f64) -> f64 {
     match rel {
         RelationalOp::Gt | RelationalOp::Ge if holds => 1.0,

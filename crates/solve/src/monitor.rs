@@ -1,4 +1,6 @@
-//! Watches a run: events that make no progress in time, assertions.
+//! Monitors of a run: events that make no progress in time, impacts that accumulate, and which warnings were reported.
+//!
+//! The driver notes every event in them. [`ChatterMonitor`] and [`ImpactAccumulation`] end a run with E502.
 
 use super::report::at_origin;
 use crate::lower::ExecutableSystem;
@@ -6,38 +8,45 @@ use bramah_syntax::diag::{Code, Diagnostic};
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 
-/// The same relations crossing so often within this part of the run count as chattering.
+/// This many events in a row, all from crossings ...
 const SLIDING_EVENTS: usize = 2000;
+/// ... within this part of the run count as chattering.
 const SLIDING_WINDOW: f64 = 1e-4;
+/// The part of the run within which only `Settings::events_at_once` events of any kind may happen.
 const INSTANT: f64 = 1e-9;
 
-/// Recent events, to recognise chattering.
+/// Recent events, to recognize chattering.
 #[derive(Debug)]
 pub struct ChatterMonitor {
+    /// Length of the run in seconds.
     span: f64,
+    /// Number of events that are allowed within [`INSTANT`] of the run.
     at_once: usize,
-    /// Time and crossing (none for time events) of the last events.
+    /// Time and crossing of the last events; `None` for events of known time.
     recent: VecDeque<(f64, Option<u32>)>,
 }
 
 impl ChatterMonitor {
-    /// For a run of this length that allows so many events in a billionth of it.
+    /// A monitor for a run of `span` seconds.
     pub fn new(span: f64, at_once: u32) -> Self {
         ChatterMonitor { span, at_once: at_once.max(1) as usize, recent: VecDeque::new() }
     }
 
-    /// Notes an event; true when events make no progress any more.
+    /// Notes an event; true when the events make no progress any more.
     pub fn note(&mut self, t: f64, crossing: Option<u32>) -> bool {
         self.recent.push_back((t, crossing));
         if self.recent.len() > SLIDING_EVENTS.max(self.at_once) {
             self.recent.pop_front();
         }
+        // many events of any kind at once, or a relation that crosses back and forth; fast clocks alone are no
+        // chattering
         self.within(self.at_once, INSTANT * self.span, t)
             || (crossing.is_some()
                 && self.within(SLIDING_EVENTS, SLIDING_WINDOW * self.span, t)
                 && self.recent.iter().all(|e| e.1.is_some()))
     }
 
+    /// Whether the last `count` events happened within `window` seconds.
     fn within(&self, count: usize, window: f64, t: f64) -> bool {
         self.recent.len() >= count && t - self.recent[self.recent.len() - count].0 <= window
     }
@@ -69,45 +78,52 @@ impl ChatterMonitor {
     }
 }
 
-/// So many intervals from event to event of one relation, each shorter than the one before, and the last of them this part
-/// of the run, are impacts that accumulate, as those of a ball that bounces.
+/// Impacts accumulate when this many intervals between events of one relation are each shorter than the one before ...
 const SHRINKING: u32 = 10;
+/// ... and the last one is below this part of the run. Example: a ball that bounces.
 const ACCUMULATED: f64 = 1e-6;
 
-/// Its sides are further apart than at the last event by this factor, and by this much in the unit of the relation, for so
-/// many of the last intervals: then nothing holds them back any more.
+/// A relation has been passed when its sides are farther apart than at the last event by this factor ...
 const PASSED: f64 = 1e6;
+/// ... and by this much in the unit of the relation ...
 const APART: f64 = 1e-9;
+/// ... this many of the last intervals after the last event.
 const INTERVALS: f64 = 100.0;
 
-/// Impacts that follow each other faster and faster: at their limit the relation is not seen to change any more, and what it
-/// held back goes through.
+/// Detects impacts that follow each other ever faster (Zeno behaviour).
+///
+/// At their limit the relation is no longer seen to change, and the body passes through what held it back.
 #[derive(Debug, Default)]
 pub struct ImpactAccumulation {
-    /// By relation and direction: the last event, the interval before it, and how many intervals have shrunk.
+    /// By relation and direction: time of the last event, the interval before it, and how many intervals have shrunk.
     seen: FxHashMap<(u32, bool), (f64, f64, u32)>,
+    /// Set when impacts have accumulated.
     limit: Option<AccumulationLimit>,
 }
 
 /// Impacts that have accumulated.
 #[derive(Clone, Copy, Debug)]
 struct AccumulationLimit {
+    /// The relation, as an index into `Dae::crossings`.
     relation: u32,
-    /// The last one.
+    /// Time of the last impact in seconds.
     time: f64,
-    /// Between the last two.
+    /// Interval between the last two impacts in seconds.
     interval: f64,
-    /// How far the sides of the relation were apart then.
+    /// Difference of the sides of the relation after the last impact.
     distance: f64,
 }
 
 impl ImpactAccumulation {
-    /// Notes an event of a relation and its direction; another event begins anew. True where impacts have accumulated.
+    /// Notes an event of a relation and its direction. True when impacts have accumulated.
+    ///
+    /// `None` is an event without a crossing; it ends the observation.
     pub fn note(&mut self, span: f64, t: f64, crossing: Option<(u32, bool)>) -> bool {
         let Some(key) = crossing else {
             self.limit = None;
             return false;
         };
+        // an event of another relation ends the observation of this one
         if self.limit.is_some_and(|l| l.relation != key.0) {
             self.limit = None;
         }
@@ -122,19 +138,19 @@ impl ImpactAccumulation {
         accumulated
     }
 
-    /// How far the sides of the relation are apart behind the event noted last.
+    /// Records how far the sides of the relation are apart after the event noted last.
     pub fn stands(&mut self, distance: f64) {
         if let Some(limit) = &mut self.limit {
             limit.distance = distance.abs();
         }
     }
 
-    /// The relation to be watched.
+    /// The relation whose impacts have accumulated; `None` when there is none.
     pub fn watched(&self) -> Option<u32> {
         self.limit.map(|l| l.relation)
     }
 
-    /// E502 where a relation that held back has been passed.
+    /// E502 when a relation whose impacts had accumulated has been passed; `None` otherwise.
     pub fn judge(&self, system: &ExecutableSystem, t: f64, distance: f64) -> Option<Diagnostic> {
         let limit = self.limit?;
         if t - limit.time <= INTERVALS * limit.interval || distance.abs() <= APART.max(PASSED * limit.distance) {
@@ -153,23 +169,27 @@ impl ImpactAccumulation {
     }
 }
 
-/// Which assertions have been reported already.
+/// Which warnings have been reported. Each is reported once in a run.
 #[derive(Debug, Default)]
 pub struct AssertionReports {
+    /// For each entry of `Dae::asserts`.
     asserts: Vec<bool>,
+    /// For each entry of `Dae::actions`.
     actions: Vec<bool>,
+    /// A load that is shared in no unique way.
     shared: bool,
+    /// A loop that has jumped to another root.
     jumped: bool,
 }
 
 impl AssertionReports {
-    /// None reported yet.
+    /// Nothing is reported yet.
     pub fn new(system: &ExecutableSystem) -> Self {
         let (asserts, actions) = (system.dae.asserts.len(), system.dae.actions.len());
         AssertionReports { asserts: vec![false; asserts], actions: vec![false; actions], shared: false, jumped: false }
     }
 
-    /// True the first time an `assert` outside `when` is reported.
+    /// True the first time that this `assert` outside `when` is reported.
     pub fn first(&mut self, assert: usize) -> bool {
         !std::mem::replace(&mut self.asserts[assert], true)
     }
@@ -184,7 +204,7 @@ impl AssertionReports {
         !std::mem::replace(&mut self.jumped, true)
     }
 
-    /// True the first time an action's `assert` is reported.
+    /// True the first time that the `assert` of this action is reported.
     pub fn first_action(&mut self, action: usize) -> bool {
         !std::mem::replace(&mut self.actions[action], true)
     }

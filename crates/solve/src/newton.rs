@@ -1,38 +1,43 @@
-//! Damped Newton for one algebraic loop, measured in nominal values; a bracketing search when a single equation resists.
+//! Damped Newton iteration for one algebraic loop, with fallbacks where it does not converge.
 //!
-//! The damping is that of Deuflhard: a step is accepted when the simplified correction behind it is shorter than the
-//! step itself. It does not depend on how equations are scaled. `min` and `max` only bound how far a step may go.
+//! A [`LoopCode`] and the array of values enter; the solution is left in the slots of the tearing unknowns. Lengths are
+//! measured in nominal values. The damping is that of P. Deuflhard (Newton Methods for Nonlinear Problems, the natural
+//! monotonicity test): a step is accepted when the simplified correction behind it is shorter than the step itself. The
+//! test does not depend on the scaling of the equations. `min` and `max` only limit how far a step may go. Fallbacks
+//! are a bracketing search for a single equation, Newton's homotopy, and undamped steps to another root.
 
 use super::linear::{Lu, SingularMatrix};
 use crate::lower::{ExecutableSystem, LoopCode};
 use bramah_model::structure::Unknown;
 
-/// A correction below this, in units of the unknown's size, ends the iteration.
+/// The iteration ends when the correction is shorter than this, in units of the unknowns' sizes.
 const TOLERANCE: f64 = 1e-11;
-/// When corrections stop shrinking below this, round-off has been reached.
+/// A correction below this that no longer shrinks is rounding error: the iteration ends too.
 const ROUND_OFF: f64 = 1e-7;
+/// Newton steps before the loop counts as not convergent.
 const MAX_ITERATIONS: u32 = 60;
+/// Damping factors below this end the iteration.
 const SMALLEST_DAMPING: f64 = 1e-5;
-/// The smallest part of the first residuals that is taken away at once.
+/// The shortest step of Newton's homotopy, as a part of the initial residual.
 const SMALLEST_PART: f64 = 1.0 / 256.0;
-/// How far beside a root its equation is looked at, in units of the unknown's size.
+/// Distance beside a possible double root at which the equation is evaluated, in units of the unknown's size.
 const ASIDE: f64 = 1e-3;
-/// Steps of a linear loop at most.
+/// Newton steps of a linear loop at most: the solution and the refinement of its rounding.
 const REFINEMENTS: u32 = 3;
 
-/// Sizes and bounds of all variables, by `VarId::index`.
+/// Sizes and bounds of all variables, indexed by `VarId::index`.
 #[derive(Clone, Debug, Default)]
 pub struct VariableScales {
-    /// Nominal values, positive.
+    /// Nominal values, positive, in the unit of the variable.
     pub nominal: Vec<f64>,
-    /// `min`, or minus infinity.
+    /// The attribute `min`, or minus infinity.
     pub min: Vec<f64>,
-    /// `max`, or infinity.
+    /// The attribute `max`, or infinity.
     pub max: Vec<f64>,
 }
 
 impl VariableScales {
-    /// The attributes of all variables with the parameters in `values`.
+    /// Evaluates the attributes of all variables with the parameters in `values`.
     pub fn new(system: &ExecutableSystem, values: &[f64]) -> Self {
         let mut scales = VariableScales::default();
         for v in (0..).map(bramah_expr::VarId).take(system.dae.variables.len()) {
@@ -43,6 +48,7 @@ impl VariableScales {
         scales
     }
 
+    /// Nominal value, minimum and maximum of an unknown. A derivative has the nominal value of its state and no bounds.
     fn of(&self, unknown: Unknown) -> (f64, f64, f64) {
         match unknown {
             Unknown::Var(v) => (self.nominal[v.index()], self.min[v.index()], self.max[v.index()]),
@@ -54,59 +60,70 @@ impl VariableScales {
 /// Why no solution was found.
 #[derive(Clone, Debug, PartialEq)]
 pub enum NewtonFailureReason {
-    /// The matrix is singular; the unknown without pivot.
+    /// The Jacobian is singular; holds the unknown without a pivot.
     Singular(Unknown),
-    /// The equations have no finite value at the first guess.
+    /// A residual is not finite at the first guess.
     NonFinite,
-    /// Too many iterations, or steps that shrink to nothing.
+    /// Too many iterations, or damping factors that became too small.
     NoConvergence,
 }
 
-/// What is known when a loop was not solved.
+/// What is known of a loop that was not solved, for the message to the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NewtonFailure {
-    /// Why.
+    /// Why the iteration ended.
     pub reason: NewtonFailureReason,
-    /// Iterations made.
+    /// Number of Newton iterations made.
     pub iterations: u32,
-    /// Equations (indices into `Dae::equations`) with their residuals in units that one nominal step of the unknowns
-    /// would cause, largest first.
+    /// Equations (indices into `Dae::equations`) with their residuals, largest first.
+    ///
+    /// The unit of a residual is the change that a nominal step of the unknowns causes in it.
     pub residuals: Vec<(u32, f64)>,
-    /// Unknowns with first guess and last value, largest change (in nominal values) first.
+    /// Unknowns with first guess and last value; the largest change in nominal values comes first.
     pub unknowns: Vec<(Unknown, f64, f64)>,
-    /// Equations whose value was not finite.
+    /// Equations whose residual was not finite.
     pub non_finite: Vec<u32>,
 }
 
-/// The work space of one loop, allocated once.
+/// Workspace of one loop with n tearing unknowns, allocated once.
 #[derive(Debug)]
 pub struct Newton {
+    /// Factors of the n x n Jacobian.
     lu: Lu,
+    /// The tearing unknowns when `solve` was called.
     guess: Vec<f64>,
+    /// The present iterate.
     x: Vec<f64>,
+    /// A candidate for the next iterate.
     trial: Vec<f64>,
+    /// The Newton correction at `x`.
     step: Vec<f64>,
+    /// The simplified correction at `trial`, with the Jacobian of `x`.
     next: Vec<f64>,
+    /// Entries of the Jacobian in the order of the loop's pattern.
     matrix: Vec<f64>,
-    /// What may be left of each residual: 0, but on the way in [`Self::in_parts`].
+    /// The value that each residual shall reach: 0, except on the way of [`Self::in_parts`].
     rest: Vec<f64>,
+    /// Iterations of the present solution.
     iterations: u32,
-    /// Whether another root will do where the one at hand has ended.
+    /// Whether another root is acceptable where the present one has ended.
     may_jump: bool,
-    /// Whether the last solution was found by a search, away from the guess.
+    /// Whether the last solution was found by a search, so that it may be another root.
     searched: bool,
 }
 
+/// The result of one damped step.
 enum LineSearchTrial {
-    /// Accepted; the length of the simplified correction.
+    /// The step is accepted; holds the length of the simplified correction behind it.
     Accepted(f64),
-    /// Not shorter than the step.
+    /// The simplified correction is not shorter than the step: try a smaller one.
     Longer,
+    /// A residual or the correction is not finite.
     NonFinite,
 }
 
 impl Newton {
-    /// Work space for a loop.
+    /// Allocates the workspace of a loop.
     pub fn new(code: &LoopCode, scales: &VariableScales) -> Self {
         let n = code.tearing.len();
         let nominal: Vec<f64> = code.tearing.iter().map(|&u| scales.of(u).0).collect();
@@ -125,31 +142,33 @@ impl Newton {
         }
     }
 
-    /// Whether full steps are tried where damped ones end nowhere: past a fold they lead to another root.
+    /// Sets whether undamped steps are tried where damped ones do not converge. Past a fold they reach another root.
     pub fn may_jump(&mut self, allowed: bool) {
         self.may_jump = allowed;
     }
 
-    /// Whether the last solution may be another root than that at hand: it was not found from the guess.
+    /// Whether the last solution was found by a search instead of from the guess. It may then be another root.
     pub fn searched(&self) -> bool {
         self.searched
     }
 
-    /// Whether unknowns that the equations leave open may keep their value ([`Lu::may_keep`]).
+    /// Sets whether unknowns that the equations leave open may keep their value ([`Lu::may_keep`]).
     pub fn may_keep(&mut self, allowed: bool) {
         self.lu.may_keep(allowed);
     }
 
-    /// Whether some did in the last solution.
+    /// Whether some unknown kept its value in the last solution.
     pub fn keeps(&self) -> bool {
         self.lu.keeps()
     }
 
-    /// Solves the loop from the values in the slots of its unknowns; inner variables are up to date afterwards.
+    /// Solves the loop from the values in the slots of its tearing unknowns. The inner variables are up to date
+    /// afterwards.
     ///
     /// # Errors
     /// [`NewtonFailure`]; the slots hold the first guess again.
     pub fn solve(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> Result<(), NewtonFailure> {
+        // a value left over from a failed evaluation must not spoil the start
         for (x, &slot) in self.x.iter_mut().zip(&code.tearing_slots) {
             *x = if values[slot].is_finite() { values[slot] } else { 0.0 };
         }
@@ -161,7 +180,9 @@ impl Newton {
             Ok(()) => return Ok(()),
             Err(reason) => reason,
         };
+        // recorded before the fallbacks below overwrite iterate and Jacobian
         let failure = self.failure(code, scales, values, reason);
+        // a single equation can be solved without a derivative
         if self.x.len() == 1
             && !code.linear
             && (self.is_double_root(code, scales, values) || self.bracket(code, scales, values))
@@ -169,21 +190,25 @@ impl Newton {
             self.searched = true;
             return Ok(());
         }
+        // homotopy follows the same root, so it comes before searches for other roots
         if failure.reason == NewtonFailureReason::NoConvergence && !code.linear && self.in_parts(code, scales, values) {
             return Ok(());
         }
+        // only a run that has reached the end of its root allows this
         if self.may_jump && !code.linear && self.in_full_steps(code, scales, values) {
             self.searched = true;
             return Ok(());
         }
+        // inner variables must belong to the guess again
         let guess = std::mem::take(&mut self.guess);
         evaluate(code, &guess, values);
         self.guess = guess;
         Err(failure)
     }
 
-    /// One step, and further ones as long as round-off of the first guess is seen: signs of values that are tiny beside
-    /// the guess decide about modes.
+    /// Solves a linear loop by one Newton step, and further steps while they remove rounding error of the first guess.
+    ///
+    /// The signs of values that are tiny against the guess decide about modes, so that rounding error matters.
     fn linear(
         &mut self,
         code: &LoopCode,
@@ -191,6 +216,7 @@ impl Newton {
         values: &mut [f64],
     ) -> Result<(), NewtonFailureReason> {
         self.iterations = 1;
+        // a linear loop can start anywhere, for example at 0
         if !evaluate(code, &self.x, values) {
             self.x.fill(0.0);
             if !evaluate(code, &self.x, values) {
@@ -215,13 +241,14 @@ impl Newton {
                 break;
             }
         }
-        // an equation that is left over and contradicts the others goes on pulling
+        // with kept unknowns an equation remains: if it contradicts the others, its correction does not vanish
         if self.lu.keeps() && self.length(code, scales, &self.step) > TOLERANCE {
             return Err(NewtonFailureReason::NoConvergence);
         }
         Ok(())
     }
 
+    /// The damped Newton iteration from `x`.
     fn iterate(
         &mut self,
         code: &LoopCode,
@@ -241,22 +268,26 @@ impl Newton {
             if !length.is_finite() {
                 return Err(NewtonFailureReason::NoConvergence);
             }
+            // below ROUND_OFF a correction that does not shrink is rounding error
             if length <= TOLERANCE || (length <= ROUND_OFF && length > 0.5 * last) {
                 return self.finish(code, values);
             }
             last = length;
+            // the limits of the unknowns shorten the first trial only; the test below may shorten it further
             let bound = self.bound(code, scales);
             let (accepted, ahead) = self.damp(code, scales, values, damping.min(bound), length)?;
             std::mem::swap(&mut self.x, &mut self.trial);
+            // a full step whose simplified correction is negligible is as good as one more iteration
             if accepted >= 1.0 && ahead <= TOLERANCE {
                 return Ok(());
             }
+            // the next iteration starts with twice the factor that was accepted
             damping = (2.0 * accepted).min(1.0);
         }
         Err(NewtonFailureReason::NoConvergence)
     }
 
-    /// The last, tiny step.
+    /// Takes the last, very small step. Where the residuals are not finite behind it, the iterate stays.
     fn finish(&mut self, code: &LoopCode, values: &mut [f64]) -> Result<(), NewtonFailureReason> {
         for ((t, x), dx) in self.trial.iter_mut().zip(&self.x).zip(&self.step) {
             *t = x + dx;
@@ -269,7 +300,7 @@ impl Newton {
         Ok(())
     }
 
-    /// Shortens the step until it is accepted; returns the damping used and the length of the correction behind it.
+    /// Shortens the step until it is accepted. Returns the damping factor and the length of the simplified correction.
     fn damp(
         &mut self,
         code: &LoopCode,
@@ -282,8 +313,10 @@ impl Newton {
         loop {
             match self.attempt(code, scales, values, damping, length) {
                 LineSearchTrial::Accepted(ahead) => return Ok((damping, ahead)),
+                // at the level of rounding the test decides nothing
                 LineSearchTrial::Longer if length <= ROUND_OFF => return Ok((damping, 0.0)),
                 LineSearchTrial::Longer => damping *= 0.5,
+                // the domain of a root or logarithm was left: shortened faster than a step that is merely too long
                 LineSearchTrial::NonFinite => damping *= 0.25,
             }
             if damping < SMALLEST_DAMPING {
@@ -292,6 +325,7 @@ impl Newton {
         }
     }
 
+    /// Tries the step with one damping factor.
     fn attempt(
         &mut self,
         code: &LoopCode,
@@ -313,6 +347,7 @@ impl Newton {
             return LineSearchTrial::NonFinite;
         }
         let ahead = self.length(code, scales, &self.next);
+        // the natural monotonicity test, relaxed as far as the damping shortens the step
         if ahead <= (1.0 - 0.25 * damping) * length {
             LineSearchTrial::Accepted(ahead)
         } else {
@@ -320,6 +355,7 @@ impl Newton {
         }
     }
 
+    /// Computes and factorizes the Jacobian at the values in the slots.
     fn factor(&mut self, code: &LoopCode, values: &mut [f64]) -> Result<(), NewtonFailureReason> {
         code.jacobian.run(values);
         for (m, &slot) in self.matrix.iter_mut().zip(&code.jacobian_slots) {
@@ -330,7 +366,7 @@ impl Newton {
             .map_err(|SingularMatrix { column }| NewtonFailureReason::Singular(code.tearing[column]))
     }
 
-    /// The Newton correction into `step`.
+    /// Computes the Newton correction into `step`.
     fn correction(&mut self, code: &LoopCode, values: &[f64]) {
         for ((b, &slot), rest) in self.step.iter_mut().zip(&code.residual_slots).zip(&self.rest) {
             *b = rest - values[slot];
@@ -338,7 +374,7 @@ impl Newton {
         self.lu.solve(&mut self.step);
     }
 
-    /// The largest entry of a correction in units of its unknown's size.
+    /// The largest entry of a correction, relative to the larger of value and nominal value of its unknown.
     fn length(&self, code: &LoopCode, scales: &VariableScales, step: &[f64]) -> f64 {
         let sizes = code.tearing.iter().zip(&self.x).map(|(&u, x)| x.abs().max(scales.of(u).0));
         step.iter().zip(sizes).fold(0.0, |m, (dx, size)| if dx.is_nan() { f64::NAN } else { (dx.abs() / size).max(m) })
@@ -351,15 +387,17 @@ impl Newton {
             let (_, min, max) = scales.of(u);
             let room = if *dx < 0.0 { x - min } else { max - x };
             if room > 0.0 && dx.abs() > room {
+                // stops short of the limit, where the equations may have no value
                 part = part.min(0.9 * room / dx.abs());
             }
         }
         part.max(0.1)
     }
 
-    /// Newton's homotopy: the residuals of the guess are taken away in parts, each solved from where the part before has
-    /// led. A flow over the root of a pressure drop is flat far from its zero, and Newton's method is thrown from one
-    /// side of it to the other; in parts it follows.
+    /// Newton's homotopy: reduces the residuals of the guess to zero in parts, each solved from the part before.
+    ///
+    /// The flow over the square root of a pressure drop is flat far from zero, and a Newton step overshoots from one
+    /// side to the other. In small parts the iteration follows the curve. True when the whole residual is removed.
     fn in_parts(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         let mut reached = self.guess.clone();
         if !evaluate(code, &reached, values) {
@@ -369,6 +407,7 @@ impl Newton {
         let (mut at, mut step) = (0.0_f64, 0.25_f64);
         while at < 1.0 && step >= SMALLEST_PART {
             let next = (at + step).min(1.0);
+            // F(x) = (1 - s) F(guess), with s from 0 to 1
             self.rest.iter_mut().zip(&first).for_each(|(rest, first)| *rest = (1.0 - next) * first);
             self.x.copy_from_slice(&reached);
             self.iterations = 0;
@@ -384,9 +423,10 @@ impl Newton {
         at >= 1.0
     }
 
-    /// Newton's method without damping, from the guess and from either side far from it. Where two roots have met and
-    /// vanished, as when a snap-through or a comparator with positive feedback lets go, damped steps end at the place where
-    /// they met.
+    /// Undamped Newton steps from the guess and from points far from it on both sides.
+    ///
+    /// Where two roots have met and vanished (a snap-through, a comparator with positive feedback), damped steps end at
+    /// the point where they met. True when another root was found.
     fn in_full_steps(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         [0.0, 1.0, -1.0, 10.0, -10.0].into_iter().any(|far| {
             for ((x, guess), &u) in self.x.iter_mut().zip(&self.guess).zip(&code.tearing) {
@@ -396,6 +436,7 @@ impl Newton {
         })
     }
 
+    /// The undamped iteration from `x`; true when it converges.
     fn full_steps(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         for _ in 0..MAX_ITERATIONS {
             if !evaluate(code, &self.x, values) || self.factor(code, values).is_err() {
@@ -411,8 +452,10 @@ impl Newton {
         false
     }
 
-    /// Whether the guess solves one equation whose derivative vanishes there, as `x^2 + y^2 = 1` at `x = 1`: a root all the same
-    /// where values on both sides differ from 0. Values are those of the guess afterwards.
+    /// Whether the guess is a double root of a single equation, as of `x^2 + y^2 = 1` at `x = 1`.
+    ///
+    /// The derivative vanishes there. The residual must be zero at the guess and different from zero on both sides. The
+    /// values are those of the guess afterwards.
     fn is_double_root(&self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         let guess = self.guess[0];
         let aside = ASIDE * guess.abs().max(scales.of(code.tearing[0]).0);
@@ -423,7 +466,7 @@ impl Newton {
         below > 0.0 && above > 0.0 && root <= f64::EPSILON * below.min(above)
     }
 
-    /// A search for a root around the guess, for one equation.
+    /// Searches for a root of a single equation around the guess; true when one is found.
     fn bracket(&mut self, code: &LoopCode, scales: &VariableScales, values: &mut [f64]) -> bool {
         let (nominal, min, max) = scales.of(code.tearing[0]);
         let mut at = |x: f64| {
@@ -435,6 +478,7 @@ impl Newton {
         at(x).is_finite()
     }
 
+    /// Collects what is known of the loop at its last iterate.
     fn failure(
         &self,
         code: &LoopCode,
@@ -455,7 +499,7 @@ impl Newton {
         NewtonFailure { reason, iterations: self.iterations, residuals, unknowns, non_finite }
     }
 
-    /// What a nominal change of the unknowns does to each residual.
+    /// For each residual the change that a nominal change of one unknown causes at most; 1 where that is not usable.
     fn row_sizes(&self, code: &LoopCode, scales: &VariableScales) -> Vec<f64> {
         let mut sizes = vec![0.0_f64; code.residuals.len()];
         for j in 0..code.pattern.n {
@@ -469,7 +513,7 @@ impl Newton {
     }
 }
 
-/// Sets the tearing unknowns and computes the rest; true when all residuals are finite.
+/// Sets the tearing unknowns and computes inner variables and residuals; true when all residuals are finite.
 fn evaluate(code: &LoopCode, x: &[f64], values: &mut [f64]) -> bool {
     for (&slot, x) in code.tearing_slots.iter().zip(x) {
         values[slot] = *x;
@@ -478,8 +522,11 @@ fn evaluate(code: &LoopCode, x: &[f64], values: &mut [f64]) -> bool {
     code.residual_slots.iter().all(|&slot| values[slot].is_finite())
 }
 
-/// The root next to the guess that a sign change shows, bisection steered by secants.
+/// A root of `at` near the guess, found from a change of sign.
+///
+/// The search widens the interval by powers of four on both sides. `None` when no change of sign is found.
 fn find_root(at: &mut impl FnMut(f64) -> f64, guess: f64, nominal: f64, min: f64, max: f64) -> Option<f64> {
+    // the widths range from 4^-8 to 4^23 sizes
     let size = nominal.max(guess.abs());
     let (mut below, mut above) = ((guess, at(guess)), (guess, at(guess)));
     for k in -8..24 {
@@ -489,6 +536,7 @@ fn find_root(at: &mut impl FnMut(f64) -> f64, guess: f64, nominal: f64, min: f64
             if !f.is_finite() {
                 continue;
             }
+            // a change of sign between this point and the previous one on the same side
             if f == 0.0 || (old.1.is_finite() && f.signum() != old.1.signum()) {
                 let root = refine(at, [*old, (x, f)]);
                 if is_root(at, root, nominal, min, max) {
@@ -501,7 +549,9 @@ fn find_root(at: &mut impl FnMut(f64) -> f64, guess: f64, nominal: f64, min: f64
     None
 }
 
-/// Residuals shrink towards a root; at a pole or a jump, where the sign changes as well, they do not.
+/// Whether the residual at `x` is small compared with its neighbours.
+///
+/// The residual shrinks towards a root. At a pole or a jump the sign changes too, but the residual does not shrink.
 fn is_root(at: &mut impl FnMut(f64) -> f64, x: f64, nominal: f64, min: f64, max: f64) -> bool {
     let near = 1e-6 * nominal.max(x.abs());
     let size = at(x).abs();
@@ -511,7 +561,7 @@ fn is_root(at: &mut impl FnMut(f64) -> f64, x: f64, nominal: f64, min: f64, max:
     })
 }
 
-/// Bisection, with a secant step every other time.
+/// Bisection with a secant step every other time. Returns the end with the smaller residual.
 fn refine(at: &mut impl FnMut(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f64 {
     for k in 0..200 {
         if b.1 == 0.0 {
@@ -521,6 +571,7 @@ fn refine(at: &mut impl FnMut(f64) -> f64, [mut a, mut b]: [(f64, f64); 2]) -> f
         let middle = 0.5 * (a.0 + b.0);
         let inside = secant.is_finite() && (secant - a.0) * (secant - b.0) < 0.0;
         let x = if inside && k % 2 == 0 { secant } else { middle };
+        // neighbouring floating-point numbers: nothing lies between
         if x == a.0 || x == b.0 {
             break;
         }

@@ -1,4 +1,6 @@
-//! Where rows go, and the grid of output times.
+//! Output: the interface that receives the rows of a run, and the grid of output times.
+//!
+//! The driver asks [`OutputGrid`] for the next time and writes rows into the caller's [`RowSink`].
 
 use super::checkpoint::Checkpoint;
 use super::modes::same_time;
@@ -9,18 +11,21 @@ use bramah_results::{Kind, Signal, Trajectory};
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// Takes the rows of a run in the order of time. Rows of equal time are an event: before and after it.
+/// Receives the rows of a run in the order of time. Two rows of equal time are an event: before and after it.
 pub trait RowSink: Send {
-    /// A row; the values are in the order of `Settings::wanted`. `Break` ends the run as interrupted.
+    /// Receives a row. The values are in the order of `Settings::wanted`, followed by their sensitivities, if any.
+    ///
+    /// `Break` ends the run as interrupted.
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()>;
 
-    /// A point from which the run can be taken up; all rows before it have come. `Break` ends the run as interrupted.
+    /// Receives a checkpoint; all rows before it have been written. `Break` ends the run as interrupted.
     fn checkpoint(&mut self, _at: &Checkpoint) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 
-    /// How long it has been writing to a slow place, for statistics: only the sink knows when it does, and a clock
-    /// around every row would cost as much as the row.
+    /// Time that the sink has spent on slow writing, for statistics.
+    ///
+    /// Only the sink knows when it writes. Measuring around every row would cost as much as the row.
     fn writing(&self) -> Duration {
         Duration::ZERO
     }
@@ -33,7 +38,7 @@ impl RowSink for Trajectory {
     }
 }
 
-/// The columns of a recording of these variables.
+/// The columns of a recording of these variables: names, units, descriptions and kinds.
 pub fn signals(dae: &Dae, wanted: &[VarId]) -> Vec<Signal> {
     let text = |t: &Option<Box<str>>| t.as_deref().unwrap_or("").to_string();
     let signal = |v: &VarId| {
@@ -49,6 +54,7 @@ pub fn signals(dae: &Dae, wanted: &[VarId]) -> Vec<Signal> {
     wanted.iter().map(signal).collect()
 }
 
+/// The kind of signal of a scalar type.
 fn kind(dae: &Dae, ty: ScalarType) -> Kind {
     match ty {
         ScalarType::Real => Kind::Real,
@@ -60,30 +66,42 @@ fn kind(dae: &Dae, ty: ScalarType) -> Kind {
     }
 }
 
-/// Output times `start + k interval` and the stop time; nothing accumulates.
+/// Output times `start + k interval` and the stop time. Each is computed from k, so that no rounding accumulates.
 #[derive(Clone, Copy, Debug)]
 pub struct OutputGrid {
+    /// First output time in seconds.
     start: f64,
+    /// Last output time in seconds.
     stop: f64,
+    /// Distance of output times in seconds; infinite for the first and last row only.
     interval: f64,
-    /// Start and interval as whole numbers of this part of a second, where they are decimal numbers: then the k-th time
-    /// is the number nearest to its decimal notation, 0.3 and not 0.30000000000000004.
+    /// Start and interval in decimal parts of a second; `None` where they are no decimal numbers.
+    ///
+    /// The k-th time is then the number nearest to its decimal notation: 0.3 and not 0.30000000000000004.
     decimal: Option<DecimalGrid>,
+    /// Index of the next row; `u64::MAX` when all rows are written.
     next: u64,
-    /// Events since the last row of the grid, how many of an interval have rows, and whether some had none.
+    /// Number of events since the last row of the grid.
     events: u64,
+    /// Number of events of each interval that have rows.
     recorded: u64,
+    /// Whether some event had no row.
     thinned: bool,
 }
 
+/// A grid in integer multiples of a decimal part of a second.
 #[derive(Clone, Copy, Debug)]
 struct DecimalGrid {
+    /// Start in these parts, an integer.
     start: f64,
+    /// Interval in these parts, an integer.
     interval: f64,
+    /// Number of parts of a second: a power of ten up to 1e9.
     parts: f64,
 }
 
 impl DecimalGrid {
+    /// The coarsest such grid; `None` where start or interval are no decimal numbers.
     fn new(start: f64, interval: f64) -> Option<Self> {
         let whole = |x: f64| (x.abs() < 1e12 && (x - x.round()).abs() <= 1e-12 * x.abs()).then(|| x.round());
         [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9].into_iter().find_map(|parts| {
@@ -92,27 +110,29 @@ impl DecimalGrid {
         })
     }
 
+    /// The k-th time in seconds.
     fn time(&self, k: u64) -> f64 {
         (self.start + k as f64 * self.interval) / self.parts
     }
 }
 
 impl OutputGrid {
-    /// Standing at the first row.
+    /// A grid at its first row. An interval of 0 or less gives the first and last row only.
     pub fn new(start: f64, stop: f64, interval: f64) -> Self {
         let interval = if interval > 0.0 { interval } else { f64::INFINITY };
         let decimal = DecimalGrid::new(start, interval);
         OutputGrid { start, stop, interval, decimal, next: 0, events: 0, recorded: u64::MAX, thinned: false }
     }
 
-    /// With so many event rows in all at most, in equal parts for each interval of the grid.
+    /// Limits the number of event rows of the run, in equal parts for each interval of the grid.
     pub fn with_event_rows(mut self, most: u64) -> Self {
         let intervals = ((self.stop - self.start) / self.interval).ceil().max(1.0);
+        // each event has two rows, before and after it
         self.recorded = ((most / 2) as f64 / intervals) as u64;
         self
     }
 
-    /// Counts an event, and says whether it has rows.
+    /// Counts an event, and returns whether it has rows.
     pub fn records_event(&mut self) -> bool {
         self.events += 1;
         let recorded = self.events <= self.recorded;
@@ -120,28 +140,29 @@ impl OutputGrid {
         recorded
     }
 
-    /// How many events of an interval have rows, where some interval had more.
+    /// The number of events of an interval that have rows, if some interval had more; `None` otherwise.
     pub fn thinned(&self) -> Option<u64> {
         self.thinned.then_some(self.recorded)
     }
 
-    /// Standing behind some rows.
+    /// A grid behind its first `rows` rows, for a run that continues.
     pub fn after(start: f64, stop: f64, interval: f64, rows: u64) -> Self {
         OutputGrid { next: rows, ..OutputGrid::new(start, stop, interval) }
     }
 
-    /// How many rows of the grid are out.
+    /// Number of rows of the grid that are written.
     pub fn rows(&self) -> u64 {
         self.next
     }
 
-    /// The next output time; infinite when all rows are out.
+    /// The next output time; infinite when all rows are written.
     pub fn next(&self) -> f64 {
         let t = match &self.decimal {
             _ if self.next == 0 => self.start,
             Some(decimal) => decimal.time(self.next),
             None => self.start + self.next as f64 * self.interval,
         };
+        // a time close to the stop time is replaced by it, so that no two rows are there
         if t < self.stop && !same_time(t, self.stop) {
             t
         } else if self.next == u64::MAX {
@@ -151,7 +172,7 @@ impl OutputGrid {
         }
     }
 
-    /// Marks rows up to and including `t` as out.
+    /// Marks rows up to and including `t` as written.
     pub fn pass(&mut self, t: f64) {
         while self.next() <= t || same_time(self.next(), t) {
             if self.next() >= self.stop {

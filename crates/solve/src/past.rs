@@ -1,10 +1,10 @@
-//! The past that `delay` reads: the trajectory of every delayed expression, recorded while the run goes on.
+//! The history that `delay` reads: the trajectory of every delayed expression, recorded during the run.
 //!
-//! To the equations a delayed value is an input. No step is longer than the shortest delay, so its trajectory is known
-//! wherever a step leads. Where a delayed expression jumps or bends at an event, the input does so one delay later: a
-//! jump is an event then, a bend a time that no step passes. In a retarded equation each passage makes a bend smoother
-//! by one derivative, and from the order of the integrator on it is none. Source: C. T. H. Baker, C. A. H. Paul,
-//! D. R. Wille, Adv. Comput. Math. 3 (1995) 171.
+//! For the equations a delayed value is an input. No step is longer than the shortest delay, so the trajectory is known
+//! wherever a step leads. A jump of a delayed expression at an event becomes a jump of the input one delay later, which
+//! is an event then. A kink becomes a time that no step passes. In a retarded equation each passage makes a kink
+//! smoother by one derivative. Beyond the order of the integrator it needs no attention. Source: C. T. H. Baker,
+//! C. A. H. Paul, D. R. Wille, Adv. Comput. Math. 3 (1995) 171.
 
 use super::modes::same_time;
 use crate::lower::ExecutableSystem;
@@ -12,59 +12,73 @@ use bramah_expr::ExprId;
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 
-/// Values in a piece: at its ends and three extrema of a Chebyshev polynomial between. With L its length, the error is
-/// at most L^5/61,000 times the fifth derivative, below that of a step of the integrator.
+/// Number of values in a piece: at its ends, and at the three extrema of a Chebyshev polynomial between.
+///
+/// With the length L of the piece, the interpolation error is at most L^5 / 61,000 times the fifth derivative. That is
+/// below the error of a step of the integrator.
 pub const POINTS: usize = 5;
 
-/// Passages after which a bend is smoother than the integrator's order can see.
+/// Passages through a delay after which a kink is smoother than the integrator's order can see.
 const PASSAGES: u32 = 5;
 
-/// A part of a step.
+/// The trajectories over a part of a step.
 #[derive(Clone, Debug, PartialEq)]
 struct HistoryPiece {
+    /// Begin in seconds.
     from: f64,
+    /// End in seconds.
     to: f64,
-    /// Per delay, at the times of [`points`].
+    /// For each delay its values at the times of [`points`].
     values: Vec<[f64; POINTS]>,
 }
 
-/// A stretch of the past in which nothing jumps or bends, never empty.
+/// A part of the history without jumps and kinks. It has at least one piece.
 #[derive(Clone, Debug, PartialEq)]
 struct HistoryStretch {
+    /// Begin in seconds.
     since: f64,
+    /// Its pieces, one behind the other.
     pieces: VecDeque<HistoryPiece>,
-    /// How often the bend at its beginning has passed a delay.
+    /// How often the kink at its beginning has passed a delay.
     passages: u32,
-    /// Per delay, whether its expression jumps at the beginning.
+    /// For each delay whether its expression jumps at the beginning.
     jumps: Vec<bool>,
 }
 
-/// What a run has recorded for its delays; a part of its state.
+/// Everything that a run has recorded for its delays. It is a part of its state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DelayHistory {
+    /// The stretches in the order of time.
     stretches: VecDeque<HistoryStretch>,
 }
 
+/// One `delay` of the model.
 #[derive(Clone, Debug)]
 struct DelayTrack {
+    /// The slot of the delayed value.
     slot: usize,
+    /// The expression that is delayed.
     source: ExprId,
+    /// The delay time in seconds.
     time: f64,
-    /// The stretch in which the delayed time lies.
+    /// The stretch that contains the delayed time.
     at: usize,
-    /// The largest value so far, for the size of a jump.
+    /// The largest absolute value so far, by which jumps are judged.
     size: f64,
 }
 
-/// All delays of a run.
+/// All delays of a run with their history.
 #[derive(Clone, Debug, Default)]
 pub struct DelayBuffers {
+    /// The delays, in the order of `Dae::delays`.
     tracks: Vec<DelayTrack>,
+    /// The recorded trajectories.
     past: DelayHistory,
+    /// The longest delay time in seconds.
     longest: f64,
 }
 
-/// The times of a piece's values.
+/// The times of the values of a piece between `from` and `to`.
 pub fn points(from: f64, to: f64) -> [f64; POINTS] {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let mut times = [1, 2, 3].map(|k| middle - half * (PI * f64::from(k) / 4.0).cos()).to_vec();
@@ -74,13 +88,14 @@ pub fn points(from: f64, to: f64) -> [f64; POINTS] {
 }
 
 impl HistoryPiece {
-    /// One value for all time.
+    /// A piece of length 0: one value for all times.
     fn point(t: f64, values: &[f64]) -> HistoryPiece {
         HistoryPiece { from: t, to: t, values: values.iter().map(|&v| [v; POINTS]).collect() }
     }
 
-    /// The polynomial through the values, in barycentric form; the weights of these points are alternating, half at the
-    /// ends.
+    /// The polynomial through the values, in barycentric form. Outside the piece the value at its end.
+    ///
+    /// The weights of these points alternate in sign and are half at the ends.
     fn value(&self, delay: usize, t: f64) -> f64 {
         let values = &self.values[delay];
         if t <= self.from || t >= self.to {
@@ -101,6 +116,7 @@ impl HistoryPiece {
 }
 
 impl HistoryStretch {
+    /// The value of a delay at time `t`.
     fn value(&self, delay: usize, t: f64) -> f64 {
         let i = self.pieces.partition_point(|p| p.to < t).min(self.pieces.len() - 1);
         self.pieces[i].value(delay, t)
@@ -108,7 +124,9 @@ impl HistoryStretch {
 }
 
 impl DelayBuffers {
-    /// For the delays of a system, whose parameters are known. None where a time is not positive: which one, and its value.
+    /// The delays of a system whose parameters are known.
+    ///
+    /// `Err` where a delay time is not positive: index and time of that delay.
     pub fn new(system: &ExecutableSystem, values: &[f64], past: DelayHistory) -> Result<DelayBuffers, (usize, f64)> {
         let track = |(i, delay): (usize, &bramah_model::structure::DelayInput)| {
             let time = system.eval(delay.time, values);
@@ -121,32 +139,34 @@ impl DelayBuffers {
         Ok(DelayBuffers { tracks, past, longest })
     }
 
-    /// True without delays.
+    /// Whether the model has no delays.
     pub fn is_empty(&self) -> bool {
         self.tracks.is_empty()
     }
 
-    /// The longest step that leads nowhere unknown.
+    /// The longest step for which all delayed values are recorded, in seconds: the shortest delay time.
     pub fn longest_step(&self) -> f64 {
         self.tracks.iter().map(|t| t.time).fold(f64::INFINITY, f64::min)
     }
 
-    /// What is recorded.
+    /// The recorded history.
     pub fn past(&self) -> &DelayHistory {
         &self.past
     }
 
-    /// Up to when; `None` without delays.
+    /// The end of the recorded history in seconds; `None` without delays.
     pub fn known_to(&self) -> Option<f64> {
         self.past.stretches.back().and_then(|s| s.pieces.back()).map(|p| p.to)
     }
 
-    /// The delayed expressions from the slots as they are.
+    /// The delayed expressions, evaluated from the slots.
     pub fn sources(&self, system: &ExecutableSystem, values: &[f64]) -> Vec<f64> {
         self.tracks.iter().map(|track| system.eval(track.source, values)).collect()
     }
 
-    /// At the start every delayed value is the value itself, unless there is a past already. True when that changed one.
+    /// At the start of a run, sets every delayed value to the present value of its expression.
+    ///
+    /// True when that changed a value.
     pub fn start(&mut self, system: &ExecutableSystem, t: f64, values: &mut [f64]) -> bool {
         let mut changed = false;
         let mut sources = Vec::new();
@@ -165,12 +185,13 @@ impl DelayBuffers {
         changed
     }
 
+    /// Starts a new stretch at `t`.
     fn open(&mut self, t: f64, values: &[f64], passages: u32, jumps: Vec<bool>) {
         let pieces = VecDeque::from([HistoryPiece::point(t, values)]);
         self.past.stretches.push_back(HistoryStretch { since: t, pieces, passages, jumps });
     }
 
-    /// What came to be between two times, at [`points`].
+    /// Appends a piece between two times; `rows` holds the values of all delays at [`points`].
     pub fn remember(&mut self, from: f64, to: f64, rows: &[Vec<f64>]) {
         let trajectory = |k: usize| std::array::from_fn(|i| rows[i][k]);
         let values: Vec<[f64; POINTS]> = (0..self.tracks.len()).map(trajectory).collect();
@@ -183,12 +204,13 @@ impl DelayBuffers {
         self.forget(to - self.longest);
     }
 
-    /// Drops what no delay reads any more.
+    /// Drops pieces that no delay reads any more.
     fn forget(&mut self, before: f64) {
         while let Some(first) = self.past.stretches.front_mut() {
             while first.pieces.len() > 1 && first.pieces[0].to < before {
                 first.pieces.pop_front();
             }
+            // a delay still reads the first stretch
             if self.tracks.iter().any(|t| t.at == 0) {
                 return;
             }
@@ -197,7 +219,9 @@ impl DelayBuffers {
         }
     }
 
-    /// An event at `t` that took the delayed expressions from some values to others. Jumps below the tolerance are none.
+    /// Records an event at `t` that took the delayed expressions from `before` to `after`.
+    ///
+    /// Jumps below the tolerance do not count as jumps.
     pub fn event(&mut self, t: f64, before: &[f64], after: &[f64], tolerance: f64) {
         let jumps = |((track, a), b): ((&DelayTrack, &f64), &f64)| (a - b).abs() > tolerance * track.size.max(b.abs());
         let jumps = self.tracks.iter().zip(before).zip(after).map(jumps).collect();
@@ -214,23 +238,24 @@ impl DelayBuffers {
         self.follow(t, values);
     }
 
-    /// Sets the values at `t`, within the stretches where the delays stand.
+    /// Sets the values at `t`, within the stretches where the delays are.
     pub fn follow(&self, t: f64, values: &mut [f64]) {
         for (k, track) in self.tracks.iter().enumerate() {
             values[track.slot] = self.past.stretches[track.at].value(k, t - track.time);
         }
     }
 
-    /// The next time after `t` at which a delayed value jumps, and at which one bends.
+    /// The next time after `t` at which a delayed value jumps; infinite when there is none.
     pub fn next_jump(&self, t: f64) -> f64 {
         self.next(t, true)
     }
 
-    /// The next time after `t` at which a delayed value bends.
+    /// The next time after `t` at which a delayed value has a kink; infinite when there is none.
     pub fn next_bend(&self, t: f64) -> f64 {
         self.next(t, false)
     }
 
+    /// The next beginning of a stretch as seen through a delay, with or without a jump.
     fn next(&self, t: f64, jump: bool) -> f64 {
         let mut next = f64::INFINITY;
         for (k, track) in self.tracks.iter().enumerate() {
@@ -241,19 +266,20 @@ impl DelayBuffers {
         next
     }
 
-    /// A bend has been passed at `t`: what reads it bends one derivative later.
+    /// Records that a kink was passed at `t`: expressions that read it have a smoother kink there.
     pub fn pass(&mut self, t: f64, sources: &[f64]) {
         let passed = self.tracks.iter().filter_map(|track| {
             let here = |s: &&HistoryStretch| same_time(s.since + track.time, t);
             self.past.stretches.iter().find(here).map(|s| s.passages)
         });
+        // after enough passages the kink is too smooth to matter
         let Some(passages) = passed.min().filter(|p| p + 1 < PASSAGES) else { return };
         self.open(t, sources, passages + 1, vec![false; self.tracks.len()]);
     }
 }
 
 impl DelayHistory {
-    /// Numbers that hold everything, for checkpoints.
+    /// The history as a list of numbers, for checkpoints and saved states.
     pub fn numbers(&self) -> Vec<f64> {
         let mut out = Vec::new();
         for stretch in &self.stretches {
@@ -269,7 +295,7 @@ impl DelayHistory {
         out
     }
 
-    /// From these numbers; `None` where they are no record.
+    /// The history from such a list; `None` where the list is damaged.
     pub fn from_numbers(numbers: &[f64]) -> Option<DelayHistory> {
         let mut rest = numbers.iter().copied();
         let mut record = DelayHistory::default();
@@ -293,7 +319,7 @@ impl DelayHistory {
         Some(record)
     }
 
-    /// True where nothing was recorded.
+    /// Whether nothing was recorded.
     pub fn is_empty(&self) -> bool {
         self.stretches.is_empty()
     }

@@ -1,4 +1,6 @@
-//! Consistent values at single points in time, without integrating between them: the start, and any state after that.
+//! Consistent values at single times, without integration: at the start, and at any states given later.
+//!
+//! The analyses (linear models, operating points) set states and inputs and read derivatives.
 
 use super::events::{EventFailure, EventHandler};
 use super::modes::CrossingModes;
@@ -13,19 +15,23 @@ use std::sync::Arc;
 /// A system with values that satisfy all its equations at one time.
 #[derive(Debug)]
 pub struct ConsistentPoint {
+    /// The lowered model.
     system: Arc<ExecutableSystem>,
+    /// Sizes and bounds of all variables.
     scales: VariableScales,
+    /// Modes of crossings.
     modes: CrossingModes,
+    /// The event iteration.
     events: EventHandler,
     /// All values, by the slots of `ExecutableSystem::layout`.
     pub values: Vec<f64>,
 }
 
 impl ConsistentPoint {
-    /// Solves the initial system at `time`, with these values of parameters.
+    /// Solves the initial system at `time` in seconds, with these values of parameters.
     ///
     /// # Errors
-    /// When the initial system, or the events at the start, cannot be solved (E400 and those after it).
+    /// The initial system or the events at the start cannot be solved (E400 and following).
     pub fn start(
         system: Arc<ExecutableSystem>,
         time: f64,
@@ -44,20 +50,20 @@ impl ConsistentPoint {
         Ok(point)
     }
 
-    /// The system.
+    /// The lowered model.
     pub fn system(&self) -> &Arc<ExecutableSystem> {
         &self.system
     }
 
-    /// The usual size of a variable, positive.
+    /// The nominal value of a variable, positive.
     pub fn nominal(&self, v: VarId) -> f64 {
         self.scales.nominal[v.index()]
     }
 
-    /// Computes everything that follows from time, states and inputs in `values`, discrete variables included.
+    /// Computes everything that follows from time, states and inputs in `values`, including discrete variables.
     ///
     /// # Errors
-    /// When an algebraic loop has no solution there, or discrete values contradict each other.
+    /// An algebraic loop has no solution there, or discrete values contradict each other.
     pub fn settle(&mut self, time: f64) -> Result<(), Box<Diagnostic>> {
         self.values[ValueLayout::TIME] = time;
         let ConsistentPoint { system, scales, modes, events, values } = self;

@@ -1,4 +1,8 @@
-//! What a run says when it fails: which variable of which component, which equation, and what to do.
+//! Diagnostics of a run: which variable of which component, which equation, and what the user can do.
+//!
+//! The driver, `initialize` and `point` pass what they know of a failure; a [`Diagnostic`] leaves. It names variables
+//! as the user wrote them, marks an equation or a declaration, and adds a help text. Codes E3xx to E5xx and W5xx are
+//! explained in docs/errors. Nothing here influences the run.
 
 use super::blocks::BlockFailure;
 use super::continuity::VariableJump;
@@ -12,7 +16,7 @@ use bramah_syntax::diag::{Code, Diagnostic};
 /// Rows of a table in a message at most.
 const ROWS: usize = 8;
 
-/// The name of an unknown as the user knows it.
+/// The name of an unknown as the user knows it: the full name of the variable, or `der(name)`.
 pub fn name(dae: &Dae, unknown: Unknown) -> String {
     match unknown {
         Unknown::Var(v) => dae.variables[v.index()].name.clone(),
@@ -20,13 +24,17 @@ pub fn name(dae: &Dae, unknown: Unknown) -> String {
     }
 }
 
-/// The component that an origin stands in, by full name and class; the model itself has no name.
+/// Full name and class of the component of an origin.
+///
+/// `None` for the model itself, which has no name.
 fn component(dae: &Dae, origin: ElementOrigin) -> Option<(&str, &str)> {
     let instance = dae.instances.get(origin.instance as usize)?;
     (!instance.name.is_empty()).then_some((instance.name.as_str(), instance.class.as_str()))
 }
 
-/// A diagnostic at a place of the model, with the component named.
+/// A diagnostic at a place of the model, with the name and class of its component.
+///
+/// `label` is the text under the marked place.
 pub fn at_origin(dae: &Dae, code: Code, text: impl Into<String>, origin: ElementOrigin, label: &str) -> Diagnostic {
     let diagnostic = Diagnostic::new(code, text).at(origin.span, label);
     match component(dae, origin) {
@@ -35,7 +43,9 @@ pub fn at_origin(dae: &Dae, code: Code, text: impl Into<String>, origin: Element
     }
 }
 
-/// A text with values, as `String(..)` prints them.
+/// The text of a message of the model (`assert`, `terminate`).
+///
+/// Values in it are evaluated from the slots and printed as `String(..)` prints them.
 pub fn message_text(system: &ExecutableSystem, message: &MessageTemplate, values: &[f64]) -> String {
     let mut text = String::new();
     for part in &message.parts {
@@ -47,6 +57,7 @@ pub fn message_text(system: &ExecutableSystem, message: &MessageTemplate, values
     text
 }
 
+/// A value as text, by its type. Enumerations are stored as the index of the literal, counted from 1.
 fn value_text(dae: &Dae, value: f64, ty: ScalarType) -> String {
     match ty {
         ScalarType::Real => number(value),
@@ -54,6 +65,7 @@ fn value_text(dae: &Dae, value: f64, ty: ScalarType) -> String {
         ScalarType::Boolean => (value != 0.0).to_string(),
         ScalarType::Enumeration(e) => {
             let literals = dae.enumerations.get(e as usize).map(|e| &e.1);
+            // a value of 0 wraps around and finds no literal
             let index = (value as usize).wrapping_sub(1);
             literals.and_then(|l| l.get(index)).cloned().unwrap_or_else(|| number(value))
         }
@@ -61,10 +73,13 @@ fn value_text(dae: &Dae, value: f64, ty: ScalarType) -> String {
 }
 
 /// A number with six significant digits, as `%g` prints it.
+///
+/// All numbers in messages of this crate are printed so.
 pub fn number(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return value.to_string();
     }
+    // rounding to six digits first: 999999.9 becomes 1e6 and so gets the exponent form
     let rounded = format!("{value:.5e}");
     let (mantissa, exponent) = rounded.split_once('e').expect("written with an exponent");
     let exponent: i32 = exponent.parse().expect("a whole number");
@@ -78,7 +93,7 @@ pub fn number(value: f64) -> String {
     }
 }
 
-/// Columns of words, aligned, below a heading.
+/// An aligned table of three columns below a heading: text to the left, numbers to the right.
 fn table(heading: [&str; 3], rows: impl Iterator<Item = [String; 3]>) -> String {
     let rows: Vec<[String; 3]> = std::iter::once(heading.map(str::to_string)).chain(rows).collect();
     let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0);
@@ -89,8 +104,10 @@ fn table(heading: [&str; 3], rows: impl Iterator<Item = [String; 3]>) -> String 
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// The first operation without a finite value in the model's equations, in the order of their evaluation, with the
-/// index of its equation.
+/// The first operation of the continuous equations that is not finite, and its equation.
+///
+/// The equation is an index into `Dae::equations`. The equations are searched in the order of their evaluation, because
+/// later values are not finite as a consequence. `None` when all values are finite.
 pub fn find_trap(system: &ExecutableSystem, values: &[f64]) -> Option<(NonFiniteTrap, u32)> {
     let found = |e: ExprId, equation: u32| system.trap(e, values).map(|trap| (trap, equation));
     for block in &system.dae.continuous {
@@ -100,6 +117,7 @@ pub fn find_trap(system: &ExecutableSystem, values: &[f64]) -> Option<(NonFinite
                 let inner = l.inner.iter().map(|a| (a.value, a.equation));
                 inner.chain(l.residuals.iter().copied()).find_map(|(e, equation)| found(e, equation))
             }
+            // mixed loops occur in the event and initial systems only
             BltBlock::Mixed(_) => None,
         };
         if trap.is_some() {
@@ -109,7 +127,7 @@ pub fn find_trap(system: &ExecutableSystem, values: &[f64]) -> Option<(NonFinite
     None
 }
 
-/// What functions outside the equations say of calls that gave no number.
+/// Messages of external functions (tables, C code) about calls that gave no number, without repetitions.
 pub fn troubles(system: &ExecutableSystem) -> Vec<String> {
     let mut troubles: Vec<String> = system.dae.exprs.functions.iter().filter_map(|f| f.external()?.failure()).collect();
     troubles.dedup();
@@ -117,6 +135,9 @@ pub fn troubles(system: &ExecutableSystem) -> Vec<String> {
 }
 
 /// E504: a value is not finite.
+///
+/// `trap` holds the operation and its equation. With `None` the message can only name the time. A message of an
+/// external function replaces the description of the operation, because it says more.
 pub fn non_finite(system: &ExecutableSystem, t: f64, trap: Option<(NonFiniteTrap, u32)>) -> Diagnostic {
     let Some((trap, equation)) = trap else {
         return Diagnostic::new(Code::NonFinite, format!("a value is not finite at time {} s", number(t)));
@@ -138,7 +159,9 @@ pub fn non_finite(system: &ExecutableSystem, t: f64, trap: Option<(NonFiniteTrap
         .help("limit the argument (`max`, `noEvent(if ...)`), or check the start values and parameters it depends on")
 }
 
-/// E504: an equation has no slope there.
+/// E504: a derivative in the Jacobian is not finite.
+///
+/// `row` is the equation and `column` the unknown. A typical cause is the square root at 0.
 pub fn infinite_derivative(system: &ExecutableSystem, t: f64, row: usize, column: usize) -> Diagnostic {
     let v = name(&system.dae, Unknown::Var(system.columns[column].variable));
     let text = match troubles(system).pop() {
@@ -150,7 +173,9 @@ pub fn infinite_derivative(system: &ExecutableSystem, t: f64, row: usize, column
     )
 }
 
-/// E509: what is differentiated jumps.
+/// E509: a variable that is differentiated jumps at an event.
+///
+/// `t` is the time in seconds. The help names the ends of a line of the library where that can be the cause.
 pub fn jump(system: &ExecutableSystem, t: f64, jump: &VariableJump) -> Diagnostic {
     let variable = &system.dae.variables[jump.variable.index()];
     let unit = variable.unit.as_deref().filter(|u| *u != "1").map_or_else(String::new, |u| format!(" {u}"));
@@ -169,7 +194,10 @@ pub fn jump(system: &ExecutableSystem, t: f64, jump: &VariableJump) -> Diagnosti
         .help(format!("smooth the command that jumps (`Signal.SecondOrder`, a ramp), let a source follow it by a filter of its own (`exact = false`), or put a spring, a resistance or another storage between{at_line}"))
 }
 
-/// What happened in a block, as a diagnostic of the given code; `when` says when, as in `at the start`.
+/// A diagnostic for a block of the event or initial system that failed.
+///
+/// `code` says which of both systems it was; `when` is a part of the text, as in `at the start`. A value that is not
+/// finite gets E504 instead of `code`.
 pub fn block_failure(
     system: &ExecutableSystem,
     code: Code,
@@ -195,6 +223,7 @@ pub fn block_failure(
     }
 }
 
+/// A diagnostic at an equation (index into `Dae::equations`), or without a place where the index is invalid.
 fn equation_diagnostic(dae: &Dae, code: Code, text: String, equation: u32) -> Diagnostic {
     match dae.equations.get(equation as usize) {
         Some(e) => at_origin(dae, code, text, e.origin, "this equation"),
@@ -202,6 +231,11 @@ fn equation_diagnostic(dae: &Dae, code: Code, text: String, equation: u32) -> Di
     }
 }
 
+/// A diagnostic for an algebraic loop without a solution.
+///
+/// Special causes come first: a missing pressure reference, an operation that is not finite, and a state in one branch
+/// of an `if` only. Otherwise the message shows the unknowns with their guesses and the equation with the largest
+/// residual.
 fn loop_failure(
     system: &ExecutableSystem,
     code: Code,
@@ -210,6 +244,7 @@ fn loop_failure(
     when: &str,
 ) -> Diagnostic {
     let equation = failure.residuals.first().map(|r| r.0).or_else(|| failure.non_finite.first().copied());
+    // a missing pressure reference has its own message, which says more than the residuals
     if let Some(reported) = equation.and_then(|e| no_pressure_level(&system.dae, loop_of(&system.dae, e)?)) {
         return reported;
     }
@@ -219,6 +254,7 @@ fn loop_failure(
         return non_finite(system, values[crate::lower::ValueLayout::TIME], Some(trap));
     }
     let dae = &system.dae;
+    // residuals are sorted, the largest first
     let worst = failure.residuals.first().map_or(0, |r| r.0);
     let names = failure.unknowns.iter().take(3).map(|u| format!("`{}`", name(dae, u.0)));
     let names = names.collect::<Vec<_>>().join(", ");
@@ -254,7 +290,9 @@ fn loop_failure(
         .help("give `start` values near the solution and `nominal` values of the right size to the unknowns above")
 }
 
-/// A variable whose derivative stands in one branch of an `if` of an equation and not in the other.
+/// A variable whose derivative stands in only one branch of an `if` of an equation.
+///
+/// The number of states would change with the condition, which this solver does not support. `None`: there is none.
 fn one_sided(dae: &Dae, equation: &FlatEquation) -> Option<VarId> {
     let nodes = dae.exprs.reachable(&[equation.lhs, equation.rhs], |_| true);
     nodes.into_iter().find_map(|e| {
@@ -264,8 +302,9 @@ fn one_sided(dae: &Dae, equation: &FlatEquation) -> Option<VarId> {
     })
 }
 
-/// The operation behind a residual that is not finite, with its equation: what follows explicitly in its loop comes
-/// before the residual that reads it.
+/// The operation behind a residual that is not finite, with its equation.
+///
+/// Inner variables of the loop are searched first, because the residual reads them.
 fn trap_in_loop(system: &ExecutableSystem, equation: u32, values: &[f64]) -> Option<(NonFiniteTrap, u32)> {
     let dae = &system.dae;
     let inner = loop_of(dae, equation).into_iter().flat_map(|l| &l.inner);
@@ -277,7 +316,7 @@ fn trap_in_loop(system: &ExecutableSystem, equation: u32, values: &[f64]) -> Opt
     })
 }
 
-/// The loop that an equation is a residual of.
+/// The loop of the initial or event system of which an equation is a residual; `None` when it is in none.
 fn loop_of(dae: &Dae, equation: u32) -> Option<&AlgebraicLoop> {
     let blocks = dae.initial.iter().chain(&dae.event).flat_map(|block| match block {
         BltBlock::Mixed(mixed) => mixed.continuous.as_slice(),
@@ -290,11 +329,14 @@ fn loop_of(dae: &Dae, equation: u32) -> Option<&AlgebraicLoop> {
     loops.next()
 }
 
-/// E302: a loop solves for pressures of ports, and none of another port enters it. That densities depend on them makes
-/// the equations regular, but fixes nothing: two flow sources with an orifice between need a tank.
+/// E302: a loop solves for pressures of ports, and no pressure from outside the loop enters it.
+///
+/// The dependence of densities on these pressures makes the equations regular, but fixes no level. Example: two flow
+/// sources with an orifice between them need a tank. `None` when the loop has no pressures, or when one enters.
 fn no_pressure_level(dae: &Dae, l: &AlgebraicLoop) -> Option<Diagnostic> {
     let variable = |v: VarId| &dae.variables[v.index()];
     let is_connector = |v: VarId| places::is_connector(&dae.variables, variable(v).origin.instance);
+    // the pressure of a port may be an alias of the unknown that is solved for
     let names =
         |v: VarId| std::iter::once(v).chain(dae.aliases.iter().filter(move |a| a.target == v).map(|a| a.variable));
     let ports = |v: VarId| names(v).filter(|&v| !variable(v).flow && is_connector(v)).collect::<Vec<VarId>>();
@@ -304,6 +346,7 @@ fn no_pressure_level(dae: &Dae, l: &AlgebraicLoop) -> Option<Diagnostic> {
     let levels: Vec<VarId> = solved.iter().copied().filter(is_pressure).flat_map(ports).collect();
     let first = *levels.first()?;
     let roots: Vec<ExprId> = l.inner.iter().map(|a| a.value).chain(l.residuals.iter().map(|r| r.0)).collect();
+    // what the loop reads but does not compute: one such pressure of a port is a reference
     let mut read = dae.exprs.dependencies(&roots).vars.into_iter().filter(|v| !solved.contains(v));
     if read.any(|v| is_pressure(&v) && !ports(v).is_empty()) {
         return None;
@@ -329,12 +372,12 @@ fn no_pressure_level(dae: &Dae, l: &AlgebraicLoop) -> Option<Diagnostic> {
     )
 }
 
-/// Whether a component is a line with or without a volume at each end.
+/// Whether a component is a line that may have a volume at each end, recognized by its parameter `volume_a`.
 fn chooses_ends(dae: &Dae, component: &str) -> bool {
     dae.variables.iter().any(|v| v.name == format!("{component}.volume_a"))
 }
 
-/// Components in which these variables switch.
+/// The components of these variables, each once, in the order of the variables.
 fn switching<'a>(dae: &'a Dae, variables: &[VarId]) -> Vec<&'a str> {
     let mut components: Vec<&str> = Vec::new();
     for v in variables {
@@ -347,7 +390,9 @@ fn switching<'a>(dae: &'a Dae, variables: &[VarId]) -> Vec<&'a str> {
     components
 }
 
-/// Parts hold a load together, and the equations do not say how much each of them carries.
+/// The warning that parts hold a load together while the equations do not determine the share of each.
+///
+/// `variables` are the discrete variables of these parts. `unknown` is the quantity that keeps its value.
 pub fn shared_load(system: &ExecutableSystem, variables: &[VarId], unknown: Unknown, t: f64) -> Diagnostic {
     let dae = &system.dae;
     let names: Vec<String> = switching(dae, variables).iter().take(ROWS).map(|c| format!("`{c}`")).collect();
@@ -364,7 +409,9 @@ pub fn shared_load(system: &ExecutableSystem, variables: &[VarId], unknown: Unkn
     .help("put what is elastic in reality between the parts where the share of each of them matters")
 }
 
-/// W511: a loop has gone on at another root; the unknown that moved most, from where to where.
+/// W511: a loop continues at another root.
+///
+/// `column` is the unknown that moved most, `from` and `to` are its values before and after, in its unit.
 pub fn root_jumped(system: &ExecutableSystem, t: f64, column: usize, from: f64, to: f64) -> Diagnostic {
     let variable = &system.dae.variables[system.columns[column].variable.index()];
     let unit = variable.unit.as_deref().filter(|u| *u != "1").map_or_else(String::new, |u| format!(" {u}"));
@@ -375,7 +422,9 @@ pub fn root_jumped(system: &ExecutableSystem, t: f64, column: usize, from: f64, 
         .help("where the jump is not meant, add what moves between the solutions: a mass, a capacitor, a volume, a lag")
 }
 
-/// Discrete values without which something is undetermined, as the shares of two dry frictions that hold one shaft.
+/// The error that something is undetermined with certain discrete values.
+///
+/// Example: the shares of two dry frictions that hold one shaft. With a single component the cause is a missing mass.
 fn shared(system: &ExecutableSystem, code: Code, variables: &[VarId], unknown: Unknown, when: &str) -> Diagnostic {
     let dae = &system.dae;
     let components = switching(dae, variables);
@@ -395,7 +444,7 @@ fn shared(system: &ExecutableSystem, code: Code, variables: &[VarId], unknown: U
         .help("leave one dry friction to each rigid body, make the others smooth (`SmoothBearingFriction`, `SmoothSupportFriction`), or put what is elastic in reality between them")
 }
 
-/// Discrete values that find no rest.
+/// The error that discrete values change without end, or contradict each other.
 pub fn changing(system: &ExecutableSystem, code: Code, variables: &[VarId], when: &str) -> Diagnostic {
     let dae = &system.dae;
     let names = variables.iter().take(ROWS).map(|v| format!("`{}`", dae.variables[v.index()].name));
@@ -410,7 +459,10 @@ pub fn changing(system: &ExecutableSystem, code: Code, variables: &[VarId], when
         .help("give the model a state between: hysteresis, `pre(..)`, or a small inertia or volume")
 }
 
-/// E501: the integrator gave up. `errors` are the weighted local errors of the unknowns.
+/// E501: the integrator gave up.
+///
+/// `h` is the last step in seconds, `why` the cause in words. `errors` are the weighted local errors of the unknowns
+/// and `y` their values, both by column. The unknown with the largest error is named as the limiting one.
 pub fn step_collapse(system: &ExecutableSystem, t: f64, h: f64, why: &str, errors: &[f64], y: &[f64]) -> Diagnostic {
     let dae = &system.dae;
     let mut order: Vec<usize> = (0..errors.len()).collect();
@@ -443,7 +495,9 @@ pub fn step_collapse(system: &ExecutableSystem, t: f64, h: f64, why: &str, error
         .help("look for a jump or an infinite slope in the equations of this variable; a smaller tolerance or a `nominal` of the right size may help")
 }
 
-/// Says of a collapse that an equation determines nothing there.
+/// Adds to a collapse that an equation determines nothing at these values, which explains the collapse better.
+///
+/// Labels and help of the collapse are replaced. `equation` is an index into `Dae::equations`.
 pub fn idle_equation(system: &ExecutableSystem, collapse: Diagnostic, equation: u32) -> Diagnostic {
     let Some(origin) = system.dae.equations.get(equation as usize).map(|e| e.origin) else { return collapse };
     let component = component(&system.dae, origin).map(|(name, class)| format!(" (`{name}`, a `{class}`)"));

@@ -1,52 +1,60 @@
-//! Going on after an event: whether the integrator may keep its past, and how long its first step may be.
+//! Continuing after an event: whether IDA keeps its past, and the length of the first step after a restart.
 //!
-//! At a stop time IDA stands exactly at the event. If the unknowns did not jump and the change of the derivatives is
-//! within what the error test sees anyway, stepping on costs nothing; most samples of a recorded input are like that.
-//! Else IDA restarts with order one, with a first step from the second derivative (IDA's own choice, half a tolerance
-//! of change, is about a thousand times too short).
+//! At a stop time IDA stands exactly at the event. If the unknowns did not jump, and the change of the derivatives is
+//! within what the error test detects anyway, IDA continues without a restart. Most samples of a recorded input are
+//! of this kind. Otherwise IDA restarts with order 1. The first step follows from an estimate of the second derivative,
+//! because IDA's own choice (half a tolerance of change) is about a thousand times too short.
 
 use super::ida::{DaeEquations, Ida};
 use super::model::IntegrationModel;
 use super::newton::VariableScales;
 use crate::lower::{ColumnRole, ExecutableSystem, UnknownColumn};
 
-/// A jump of an unknown, in tolerances, that does not need a restart.
+/// A jump of an unknown, in tolerances, that needs no restart.
 const SMALL_JUMP: f64 = 1.0;
-/// A change of the derivatives over the next step, in tolerances, that the error test may deal with.
+/// A change of the derivatives over the next step, in tolerances, that needs no restart.
 const SMALL_KINK: f64 = 0.3;
 /// The same over the part of a step that was made beyond a root with the old equations.
 const SMALL_TAIL: f64 = 0.1;
 /// The error of the first step after an event, in tolerances.
 const FIRST_ERROR: f64 = 0.3;
-/// The same at the start, where no step tells yet how much of it is to come.
+/// The error of the first step of a run, in tolerances. No earlier step shows how long a step can be there.
 const START_ERROR: f64 = 0.1;
 
-/// How many times shorter, in powers of two, a turn of a crossing function may be than the first step.
+/// Halvings of the time ahead in the search for a turn of a crossing function.
 const HALVINGS: i32 = 20;
 
-/// Buffers for the unknowns around an event.
+/// Unknowns and derivatives around an event. All vectors have one entry per column, or one where there is no column.
 #[derive(Debug, Default)]
 pub struct IntegratorRestart {
+    /// Nominal values of the unknowns.
     nominal: Vec<f64>,
+    /// Relative tolerance of the run.
     tolerance: f64,
+    /// Unknowns after the event, with which IDA restarts.
     y: Vec<f64>,
+    /// Derivatives after the event; 0 for algebraic unknowns until [`Self::learn_slopes`].
     yp: Vec<f64>,
+    /// Unknowns just before the event.
     old: Vec<f64>,
+    /// Derivatives just before the event, from the equations.
     old_slopes: Vec<f64>,
-    /// Slot of each unknown, and of its derivative if it is a state.
+    /// Slot of each unknown, and of its derivative if it is differential or follows from a conserved quantity.
     slots: Vec<(usize, Option<usize>)>,
-    /// The derivative of every unknown is given: no algebraic unknowns.
+    /// Whether the equations give the derivative of every unknown, so that there are no algebraic unknowns.
     explicit: bool,
-    /// Of each conserved quantity what the integrator had before the event, and what it was by the states then.
+    /// For each conserved quantity its value in the integrator before the event, and its value by the states then.
     held: Vec<(f64, f64)>,
+    /// The Euler correction of the last first step; 0 for algebraic unknowns once their slopes are known.
     correction: Vec<f64>,
+    /// Length of the steps before the last restart, in seconds; 0 when there was none.
     usual_step: f64,
-    /// Length of the Euler step behind `correction`.
+    /// Length of the Euler step behind `correction`, in seconds.
     probe: f64,
 }
 
 impl IntegratorRestart {
-    /// For the unknowns of a system; one dummy if it has none.
+    /// Buffers for the unknowns of a system; for one dummy unknown if the system has none.
     pub fn new(system: &ExecutableSystem, scales: &VariableScales, tolerance: f64) -> Self {
         let mut nominal: Vec<f64> = system.columns.iter().map(|c| scales.nominal[c.variable.index()]).collect();
         let layout = &system.layout;
@@ -73,28 +81,30 @@ impl IntegratorRestart {
         }
     }
 
-    /// Sizes of the unknowns.
+    /// Nominal values of the unknowns.
     pub fn nominal(&self) -> &[f64] {
         &self.nominal
     }
 
-    /// True when there are no algebraic unknowns.
+    /// Whether there are no algebraic unknowns.
     pub fn is_explicit(&self) -> bool {
         self.explicit
     }
 
-    /// The gathered unknowns.
+    /// The unknowns gathered last.
     pub fn y(&self) -> &[f64] {
         &self.y
     }
 
-    /// Their derivatives.
+    /// The derivatives gathered last.
     pub fn yp(&self) -> &[f64] {
         &self.yp
     }
 
-    /// Takes the unknowns from their slots after an event or the start. A conserved quantity changes by what the event has
-    /// changed of the states behind it: it does not lose what the corrector left in them.
+    /// Copies unknowns and derivatives from their slots after an event or the start.
+    ///
+    /// A conserved quantity changes only by what the event has changed of its states. It keeps the difference between
+    /// the integrator's value and the value by the states, so that corrector errors do not accumulate in it.
     pub fn gather(&mut self, system: &ExecutableSystem, values: &mut [f64]) {
         system.quantities(values);
         for (i, &(slot, der)) in self.slots.iter().enumerate() {
@@ -108,7 +118,7 @@ impl IntegratorRestart {
         }
     }
 
-    /// Remembers the unknowns and the equations' derivatives just before an event.
+    /// Stores unknowns and derivatives just before an event. `values` must be observed there.
     pub fn before(&mut self, system: &ExecutableSystem, values: &mut [f64], y: &[f64]) {
         self.hold(system, values, |column, _| y[column]);
         self.old.copy_from_slice(y);
@@ -117,11 +127,12 @@ impl IntegratorRestart {
         }
     }
 
-    /// Takes the conserved quantities of a saved state for what the integrator had.
+    /// Takes the conserved quantities of a saved state as the values of the integrator.
     pub fn resume(&mut self, system: &ExecutableSystem, values: &mut [f64]) {
         self.hold(system, values, |_, saved| saved);
     }
 
+    /// Stores for each quantity the value to keep and the value by the states.
     fn hold(&mut self, system: &ExecutableSystem, values: &mut [f64], kept: impl Fn(usize, f64) -> f64) {
         system.quantities(values);
         for (held, integral) in self.held.iter_mut().zip(&system.integrals) {
@@ -130,30 +141,32 @@ impl IntegratorRestart {
         }
     }
 
+    /// The reciprocal tolerance of an unknown.
     fn weight(&self, i: usize) -> f64 {
         1.0 / (self.tolerance * (self.y[i].abs() + self.nominal[i]))
     }
 
-    /// Root mean square in tolerances, as IDA measures.
+    /// Root mean square of the entries in tolerances, like IDA's norm.
     fn norm(&self, entry: impl Fn(usize) -> f64) -> f64 {
         let n = self.y.len();
         let sum: f64 = (0..n).map(|i| (entry(i) * self.weight(i)).powi(2)).sum();
         (sum / n as f64).sqrt()
     }
 
-    /// Whether the integrator's past still serves at a stop time; `next` is the next one.
+    /// Whether IDA's past is still valid after an event at a stop time; `next` is the next stop in seconds.
     pub fn past_serves(&self, ida: &Ida<IntegrationModel<'_>>, t: f64, next: f64) -> bool {
+        // the first step after the event, during which a kink of the derivatives acts
         let h = ida.step_lengths().1.abs().min(next - t);
         let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
         self.jump() <= SMALL_JUMP && kink * h <= SMALL_KINK * f64::from(ida.order() + 1)
     }
 
-    /// The same at a root, beyond which the integrator has already stepped with the old equations: true when the new
-    /// ones agree there.
+    /// Whether IDA's past is still valid after a root. IDA has already stepped beyond it with the old equations.
     pub fn past_serves_ahead(&mut self, ida: &mut Ida<IntegrationModel<'_>>, t: f64, changed: bool) -> bool {
+        // Algebraic unknowns satisfy their equations only to a tolerance. With IDA's values a crossing may seem passed
+        // that the exact values of the event still have ahead. IDA would never report it, so only explicit systems may
+        // continue.
         if !changed {
-            // Algebraic unknowns are met to a tolerance only: seen through them a crossing lies behind already, and
-            // would never be found, that the exact values of the event still have ahead.
             return self.explicit && self.jump() <= SMALL_JUMP;
         }
         let kink = self.norm(|i| self.yp[i] - self.old_slopes[i]);
@@ -161,6 +174,7 @@ impl IntegratorRestart {
         if !self.explicit || self.jump() > 0.0 || kink * tail > SMALL_TAIL {
             return false;
         }
+        // the changed equations must agree with the end of IDA's step
         let mut residual = std::mem::take(&mut self.correction);
         let agrees = ida.residual_ahead(&mut residual) && self.norm(|i| residual[i]) * tail <= SMALL_TAIL;
         self.correction = residual;
@@ -172,12 +186,16 @@ impl IntegratorRestart {
         (0..self.y.len()).map(|i| ((self.y[i] - self.old[i]) * self.weight(i)).abs()).fold(0.0, f64::max)
     }
 
-    /// Keeps in mind how long steps were before a restart.
+    /// Records how long the steps were before a restart.
     pub fn remember_step(&mut self, ida: &Ida<IntegrationModel<'_>>) {
+        // a short step just before the event must not shorten all later restarts
         self.usual_step = ida.step_lengths().0.max(0.5 * self.usual_step);
     }
 
-    /// Restarts at `t` from the gathered values; `room` is left until the next event. False when IDA refuses.
+    /// Restarts IDA at `t` from the gathered values and sets the first step; false when IDA refuses.
+    ///
+    /// `room` is the time until the next stop and `longest` the longest step, both in seconds. `start` is true at the
+    /// start of a run, where IDA is new. `root` is true after a root.
     pub fn restart(
         &mut self,
         ida: &mut Ida<IntegrationModel<'_>>,
@@ -189,6 +207,7 @@ impl IntegratorRestart {
     ) -> bool {
         let error = if start { START_ERROR } else { FIRST_ERROR };
         let mut h = self.first_step(ida, t, room.min(longest), room, error);
+        // after a root a function may cross back within the first step
         if root {
             h = self.see_return(ida, t, h);
         }
@@ -199,10 +218,11 @@ impl IntegratorRestart {
         true
     }
 
-    /// A step that does not leap over what a crossing function does beside going on: crossing zero and coming back, as
-    /// after the small bounce of a ball, or leaving zero and returning to it, as where a contact slips for a moment. The
-    /// straight line of the first step would miss the one, and take the other back at once, over and over. At most a
-    /// quarter of the shortest of these times.
+    /// Shortens the first step so that it does not pass over two crossings of one function.
+    ///
+    /// The function may cross zero and come back (a small bounce of a ball), or leave zero and return (a contact that
+    /// slips for a moment). A straight first step would miss the first case and repeat the second one again and again.
+    /// The step is at most a quarter of the shortest such time.
     fn see_return(&mut self, ida: &mut Ida<IntegrationModel<'_>>, t: f64, h: f64) -> f64 {
         let count = ida.equations().roots.len();
         let at = |ahead: f64| {
@@ -210,21 +230,25 @@ impl IntegratorRestart {
             self.crossings_after(ida, t, ahead, &mut g);
             g
         };
+        // from four steps ahead down to 4 h / 2^20
         let times: Vec<f64> = (0..=HALVINGS).map(|k| 4.0 * h * 0.5_f64.powi(k)).collect();
         let trajectories: Vec<Vec<f64>> = std::iter::once(0.0).chain(times.iter().copied()).map(at).collect();
         let turns = (0..count).filter_map(|i| turn(trajectories[0][i], |k| trajectories.get(k + 1).map(|g| g[i])));
         turns.max().map_or(h, |k| 0.25 * times[k])
     }
 
-    /// The crossing functions a time `h` ahead, by a parabola through the values and derivatives now.
+    /// The crossing functions a time `h` ahead, on a parabola through the present values and derivatives.
     fn crossings_after(&self, ida: &mut Ida<IntegrationModel<'_>>, t: f64, h: f64, g: &mut [f64]) {
+        // correction = h^2 y'' to first order, so y'' = correction / probe^2
         let bend = |i: usize| self.correction.get(i).map_or(0.0, |c| c / (self.probe * self.probe));
         let y: Vec<f64> = (0..self.y.len()).map(|i| self.y[i] + h * (self.yp[i] + 0.5 * h * bend(i))).collect();
         ida.equations().crossings(t + h, &y, &self.yp, g);
     }
 
-    /// The slopes of algebraic unknowns, from what they moved in the Euler step: IDA predicts with them. What is left of
-    /// the correction is the bend of the states. Not at the start, where nothing tells how far a straight line serves.
+    /// Takes the derivatives of algebraic unknowns from the Euler step, because IDA's predictor uses them.
+    ///
+    /// Their corrections become 0: what remains of `correction` estimates the second derivatives of the states. Not
+    /// used at the start, where nothing tells how far a straight line is valid.
     fn learn_slopes(&mut self, probe: f64, correction: &mut [f64]) {
         for (i, _) in self.slots.iter().enumerate().filter(|(_, (_, der))| der.is_none()) {
             self.yp[i] = correction[i] / probe;
@@ -232,13 +256,13 @@ impl IntegratorRestart {
         }
     }
 
-    /// The step with this error, in tolerances, with order one; at most `longest`.
+    /// The length of a step of order 1 with this error in tolerances, in seconds; at most `longest`.
     fn first_step(&mut self, ida: &mut Ida<IntegrationModel<'_>>, t: f64, longest: f64, room: f64, error: f64) -> f64 {
         let speed = self.norm(|i| self.yp[i]);
         let usual = if self.usual_step > 0.0 { self.usual_step } else { 1e-3 * room };
-        // moves the unknowns by about one tolerance
+        // moves the unknowns by about one tolerance, but stays above the rounding of t
         let probe = (1.0 / speed).min(0.1 * usual).min(0.01 * room).max(1e-10 * t.abs());
-        // nothing is known of the start's surroundings: no unknown shall leave its own size at once
+        // at the start: no unknown shall move by more than its own size in one step
         let sensible = if self.usual_step > 0.0 { f64::INFINITY } else { 1.0 / (self.tolerance * speed) };
         let most = (10.0 * usual).min(longest).min(sensible);
         if self.slots.is_empty() || probe.is_nan() || probe <= 0.0 {
@@ -251,6 +275,7 @@ impl IntegratorRestart {
                 self.learn_slopes(probe, &mut correction);
             }
             let bend = self.norm(|i| correction[i]) / (probe * probe);
+            // the error of a step of order 1 is h^2 y'' / 2
             (2.0 * error / bend).sqrt().min(most)
         } else {
             (0.5 / speed).min(most)
@@ -261,8 +286,10 @@ impl IntegratorRestart {
     }
 }
 
-/// The first of shorter and shorter times ahead at which a function, `now` and at these times, is seen to turn: on the
-/// other side of zero though it is on this one later, or farther on this side than now though it is on the other later.
+/// The index of the first of ever shorter times ahead at which a function is seen to turn back.
+///
+/// The function turns when it is on the other side of zero now than later, or farther from zero than now although it
+/// crosses later. `ahead(k)` is the function at time k; `None` ends the times. `None` as the result: no turn.
 fn turn(now: f64, ahead: impl Fn(usize) -> Option<f64>) -> Option<usize> {
     let here = |g: f64| g.signum() == now.signum();
     let returns = here(ahead(0)?);

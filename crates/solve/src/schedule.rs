@@ -1,30 +1,37 @@
-//! Events whose time is known: `sample`, relations of time, held inputs. They are located exactly.
+//! Events of known time: the clocks of `sample`, and relations of time. They are located exactly, without root finding.
 
 use super::modes::{after, same_time};
 use crate::lower::ExecutableSystem;
 use bramah_model::structure::CrossingKind;
 
-/// The clocks of `sample`. Times are `start + k interval`, computed anew each time so that nothing accumulates.
+/// The clocks of all `sample` operators. Times are `start + k interval`, computed from k, so that no rounding
+/// accumulates.
 #[derive(Clone, Debug, Default)]
 pub struct SampleClocks {
+    /// One clock per entry of `Dae::samples`.
     clocks: Vec<SampleClock>,
 }
 
+/// One clock. Times are in seconds.
 #[derive(Clone, Copy, Debug)]
 struct SampleClock {
+    /// Time of the first tick.
     start: f64,
+    /// Time between ticks, positive.
     interval: f64,
+    /// Index of the next tick.
     next: u64,
 }
 
 impl SampleClock {
+    /// Time of the next tick.
     fn time(&self) -> f64 {
         self.start + self.next as f64 * self.interval
     }
 }
 
 impl SampleClocks {
-    /// All clocks, standing at their first instant at or after `t`.
+    /// All clocks, each at its first tick at or after `t`.
     ///
     /// # Errors
     /// The index of a `sample` whose interval is not positive.
@@ -37,6 +44,7 @@ impl SampleClocks {
             }
             let mut clock = SampleClock { start, interval, next: 0 };
             if start < t {
+                // starts one tick too early, because the division may round up
                 clock.next = (((t - start) / interval).floor() as u64).saturating_sub(1);
                 while clock.time() < t && !same_time(clock.time(), t) {
                     clock.next += 1;
@@ -47,12 +55,12 @@ impl SampleClocks {
         Ok(SampleClocks { clocks })
     }
 
-    /// The next instant of any clock.
+    /// The next tick of any clock; infinite without clocks.
     pub fn next(&self) -> f64 {
         self.clocks.iter().map(SampleClock::time).fold(f64::INFINITY, f64::min)
     }
 
-    /// Calls `ring` for each clock whose instant is `t`, and moves those on.
+    /// Calls `ring` for each clock whose tick is due at `t`, and moves those clocks on.
     pub fn ring(&mut self, t: f64, mut ring: impl FnMut(usize)) {
         for (i, clock) in self.clocks.iter_mut().enumerate() {
             if same_time(clock.time(), t) || clock.time() < t {
@@ -62,7 +70,7 @@ impl SampleClocks {
         }
     }
 
-    /// Passes over all instants up to and including `t`.
+    /// Moves all clocks past `t`.
     pub fn skip(&mut self, t: f64) {
         for clock in &mut self.clocks {
             while clock.time() < t || same_time(clock.time(), t) {
@@ -72,7 +80,9 @@ impl SampleClocks {
     }
 }
 
-/// The next time after `t` at which a relation of time changes, with the values as they are now.
+/// The next time after `t` at which a relation of time changes; infinite when there is none.
+///
+/// The time that a relation compares with may depend on discrete values, so it is evaluated again after each event.
 pub fn next_time_crossing(system: &ExecutableSystem, values: &[f64], t: f64) -> f64 {
     let mut next = f64::INFINITY;
     for crossing in &system.dae.crossings {

@@ -1,14 +1,18 @@
-//! Watches whether the chosen states still serve: constraints must stay solvable for the dummies.
+//! Dynamic state selection: whether the chosen states are still good, and which ones are better.
+//!
+//! Index reduction makes some candidates dummies, which the constraints determine. The constraints must stay solvable
+//! for them. The driver calls [`better_choice`] at its pauses. Source: S. E. Mattsson, G. Soderlind, SIAM J. Sci.
+//! Comput. 14 (1993) 677 (dummy derivatives).
 
 use super::newton::VariableScales;
 use crate::lower::ExecutableSystem;
 use bramah_expr::VarId;
 use bramah_model::structure::{StateChoice, StateSelection};
 
-/// The present dummies are given up when their smallest pivot falls below this part of the best choice's.
+/// The present dummies are given up when their smallest pivot is below this part of the best choice's.
 const WEAK: f64 = 0.2;
 
-/// The states to prefer from now on, if some group of constraints has become hard to solve for its dummies.
+/// The states to prefer from now on; `None` while the present ones are good enough.
 pub fn better_choice(system: &ExecutableSystem, scales: &VariableScales, values: &[f64]) -> Option<StateChoice> {
     let mut preferred = Vec::new();
     let mut changed = false;
@@ -18,6 +22,7 @@ pub fn better_choice(system: &ExecutableSystem, scales: &VariableScales, values:
             selection.dummies.iter().filter_map(|d| selection.candidates.iter().position(|c| c == d)).collect();
         let (best, best_pivot) = eliminate(matrix.clone(), &(0..selection.candidates.len()).collect::<Vec<_>>());
         let (_, pivot) = eliminate(matrix, &present);
+        // a group that is still good keeps its dummies, although another group changes
         let dummies = if pivot < WEAK * best_pivot { &best } else { &present };
         changed |= pivot < WEAK * best_pivot;
         let states = (0..selection.candidates.len()).filter(|i| !dummies.contains(i));
@@ -26,7 +31,9 @@ pub fn better_choice(system: &ExecutableSystem, scales: &VariableScales, values:
     (changed && !preferred.is_empty()).then_some(StateChoice { preferred })
 }
 
-/// The rows of a group with columns in units of the candidates' nominal values; `None` when not finite.
+/// The constraint matrix of a group, one row per constraint, with columns in units of the candidates' nominal values.
+///
+/// `None` when an entry is not finite.
 fn scaled_rows(
     system: &ExecutableSystem,
     scales: &VariableScales,
@@ -42,8 +49,9 @@ fn scaled_rows(
     rows.iter().flatten().all(|v| v.is_finite()).then_some(rows)
 }
 
-/// Elimination with the largest pivot among the allowed columns: the columns used, and the smallest pivot relative to
-/// its row's largest entry.
+/// Gaussian elimination with the largest pivot among the allowed columns.
+///
+/// Returns the columns used, and the smallest pivot relative to the largest entry of its row (0 when there is none).
 fn eliminate(mut rows: Vec<Vec<f64>>, allowed: &[usize]) -> (Vec<usize>, f64) {
     for row in &mut rows {
         let largest = row.iter().fold(0.0_f64, |m, v| m.max(v.abs()));

@@ -1,39 +1,39 @@
-//! What a run is asked to do, and what it reports about its work.
+//! Settings of a run, the statistics of its work, and how it ended.
 
 use super::TangentRequest;
 use super::modes::same_time;
 use bramah_expr::VarId;
 use bramah_model::flat::ExperimentAnnotation;
 
-/// Event rows that a run has at most unless it is asked for more: some tens of megabytes with thirty variables.
+/// Default limit of event rows: some tens of megabytes with thirty variables.
 pub const MOST_EVENT_ROWS: u64 = 100_000;
 
-/// How to run. Times in seconds.
+/// What a run shall do. Times are in seconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Where the run starts.
+    /// Start of the run.
     pub start_time: f64,
-    /// Where it ends.
+    /// End of the run.
     pub stop_time: f64,
-    /// Distance of output rows; 0 or less: only the first and last row, and events.
+    /// Distance of output rows. With 0 or less, only the first row, the last row and events are written.
     pub interval: f64,
-    /// Relative tolerance; the absolute one of a variable is this times its `nominal`.
+    /// Relative tolerance. The absolute tolerance of a variable is this times its `nominal`.
     pub tolerance: f64,
-    /// Longest step of the integrator; infinite for none.
+    /// Longest step of the integrator; infinite for no limit.
     pub longest_step: f64,
-    /// Parameters given from outside, in the variables' units; their bindings are not used.
+    /// Parameters with new values, in the units of the variables. Their bindings are not used.
     pub parameters: Vec<(VarId, f64)>,
     /// The variables to record, in the order of the columns.
     pub wanted: Vec<VarId>,
-    /// Two rows of equal time, before and after, at each event.
+    /// Whether each event has two rows of equal time, before and after it.
     pub event_rows: bool,
-    /// Event rows at most, in equal parts for each interval of the grid: what chatters fills no disk.
+    /// Event rows at most, in equal parts for each interval of the grid. A model with many events cannot fill the disk.
     pub most_event_rows: u64,
-    /// How many events may happen in a billionth of the run before it counts as chattering.
+    /// Number of events in a billionth of the run above which it counts as chattering.
     pub events_at_once: u32,
-    /// Distance of checkpoints, at which the integrator begins afresh; infinite for none.
+    /// Distance of checkpoints, at which the integrator restarts; infinite for none.
     pub checkpoint_every: f64,
-    /// Sensitivities to carry along; not together with checkpoints or with states that change.
+    /// Sensitivities to compute. Not together with checkpoints or with states that change.
     pub tangents: Option<TangentRequest>,
 }
 
@@ -57,7 +57,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// What a model's `experiment` annotation asks for; 500 intervals when it gives none.
+    /// The settings of a model's `experiment` annotation (MLS 18.4); 500 intervals when it gives none.
     pub fn from_experiment(experiment: &ExperimentAnnotation) -> Self {
         let standard = Settings::default();
         let start_time = experiment.start_time.unwrap_or(standard.start_time);
@@ -71,7 +71,7 @@ impl Settings {
         }
     }
 
-    /// When the `number`-th checkpoint is due, counted from 1; the stop time when it does not come before that.
+    /// The time of the `number`-th checkpoint, counted from 1; the stop time when it would not come before that.
     pub(super) fn checkpoint(&self, number: u64) -> f64 {
         let due = self.start_time + number as f64 * self.checkpoint_every;
         let before_end = self.checkpoint_every > 0.0 && due < self.stop_time && !same_time(due, self.stop_time);
@@ -79,34 +79,34 @@ impl Settings {
     }
 }
 
-/// How much work a run was. Times in seconds.
+/// The work of a run. Times are in seconds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Statistics {
     /// From the text to the lowered system; filled by the caller.
     pub compile_s: f64,
-    /// Finding the initial values.
+    /// Time for initial values, including the event iteration at the start.
     pub initialize_s: f64,
-    /// From the first step to the last, interpolation included, writing excluded.
+    /// From the first step to the last one, with interpolation, without writing.
     pub solve_s: f64,
     /// Accepted steps of the integrator.
     pub steps: u64,
-    /// Evaluations of the equations.
+    /// Evaluations of the residual.
     pub residual_evaluations: u64,
     /// Evaluations of the Jacobian.
     pub jacobian_evaluations: u64,
-    /// Factorisations of the iteration matrix.
+    /// Factorizations of the iteration matrix.
     pub factorizations: u64,
     /// Steps that were repeated because their error was too large.
     pub error_test_failures: u64,
     /// Evaluations of the root functions.
     pub crossing_evaluations: u64,
-    /// Events, those of held inputs included.
+    /// Events, including those of held inputs.
     pub events: u64,
     /// Restarts of the integrator.
     pub restarts: u64,
     /// Unknowns of the IDA system.
     pub unknowns: usize,
-    /// Differential ones among them.
+    /// States of the model among them.
     pub states: usize,
 }
 
@@ -142,12 +142,12 @@ pub enum End {
     Assertion,
     /// A value was not finite.
     NonFinite,
-    /// From outside, as by Ctrl-C.
+    /// The caller or the sink stopped it, for example by Ctrl-C.
     Interrupted,
 }
 
 impl End {
-    /// The word in statistics files.
+    /// The word for statistics files.
     pub fn word(&self) -> &'static str {
         match self {
             End::Reached => "reached",
@@ -160,7 +160,7 @@ impl End {
         }
     }
 
-    /// True when the run did what the model asked for.
+    /// Whether the run did what the model asked for.
     pub fn is_success(&self) -> bool {
         matches!(self, End::Reached | End::Terminated(_))
     }

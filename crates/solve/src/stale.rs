@@ -1,26 +1,28 @@
-//! Which blocks of the event system an event iteration has to solve again: those that read what has changed since.
+//! Which blocks of the event system must be solved again in an event iteration: those that read changed values.
 //!
-//! After its first pass an iteration changes little: `pre` values, the modes of `sample`, states that are set. All else
-//! would come out as it is, loops included, which are what costs.
+//! After its first pass an iteration changes little: `pre` values, modes of `sample`, states that are set. All other
+//! blocks would give the same results, including loops, which are expensive. `events` uses it from the second pass on.
 
 use crate::lower::{BlockCode, ExecutableSystem};
 use bramah_expr::ExprId;
 
-/// Blocks by what they read, and which of them wait.
+/// The dependences between the event blocks, and which blocks are stale.
 #[derive(Debug)]
 pub struct StaleBlocks {
-    /// Of each slot, where its readers begin among `readers`, and one past the last.
+    /// For each slot where its readers begin in `readers`; one more entry for the end.
     starts: Vec<u32>,
     /// Blocks in the order of the slots that they read.
     readers: Vec<u32>,
-    /// Slots that each block computes.
+    /// For each block the slots that it computes.
     computed: Vec<Vec<usize>>,
+    /// For each block whether it is stale.
     waiting: Vec<bool>,
+    /// Values that the present block had computed before.
     before: Vec<f64>,
 }
 
 impl StaleBlocks {
-    /// For the event blocks of a system; none waits.
+    /// The dependences of the event blocks of a system. No block is stale.
     pub fn new(system: &ExecutableSystem) -> Self {
         let computed: Vec<Vec<usize>> = system.event.iter().map(computed).collect();
         let mut maker = vec![None; system.layout.len()];
@@ -29,6 +31,7 @@ impl StaleBlocks {
         }
         let mut reads: Vec<(usize, u32)> = Vec::new();
         for (number, block) in (0..).zip(&system.event) {
+            // what a block computes itself does not make it stale
             let slots = read(system, block).into_iter().filter(|&slot| maker[slot] != Some(number));
             reads.extend(slots.map(|slot| (slot, number)));
         }
@@ -43,14 +46,14 @@ impl StaleBlocks {
         }
     }
 
-    /// What reads this slot has to be solved again.
+    /// Marks the blocks that read this slot as stale.
     pub fn touch(&mut self, slot: usize) {
         for &reader in &self.readers[self.starts[slot] as usize..self.starts[slot + 1] as usize] {
             self.waiting[reader as usize] = true;
         }
     }
 
-    /// Whether a block waits; it does no more. What it computes is kept to be compared.
+    /// Whether a block is stale, and marks it as up to date. Its present results are stored for [`Self::compare`].
     pub fn take(&mut self, block: usize, values: &[f64]) -> bool {
         let waited = std::mem::take(&mut self.waiting[block]);
         if waited {
@@ -60,10 +63,11 @@ impl StaleBlocks {
         waited
     }
 
-    /// What reads a value of this block that is not what it was has to be solved again.
+    /// Marks the readers of all results of this block that have changed as stale.
     pub fn compare(&mut self, block: usize, values: &[f64]) {
         for k in 0..self.before.len() {
             let slot = self.computed[block][k];
+            // by bits, so that NaN equals NaN
             if values[slot].to_bits() != self.before[k].to_bits() {
                 self.touch(slot);
             }
@@ -83,7 +87,7 @@ fn computed(block: &BlockCode) -> Vec<usize> {
     }
 }
 
-/// The slots that a block reads: those of variables, derivatives and `pre` values.
+/// The slots that a block reads: variables, derivatives and `pre` values.
 fn read(system: &ExecutableSystem, block: &BlockCode) -> Vec<usize> {
     let (layout, found) = (&system.layout, system.dae.exprs.dependencies(&expressions(block)));
     let vars = found.vars.iter().map(|&v| layout.var(v));
@@ -92,6 +96,7 @@ fn read(system: &ExecutableSystem, block: &BlockCode) -> Vec<usize> {
     vars.chain(ders).chain(pres).collect()
 }
 
+/// All expressions of a block.
 fn expressions(block: &BlockCode) -> Vec<ExprId> {
     match block {
         BlockCode::Assign(run) => run.targets.iter().map(|t| t.value).collect(),

@@ -1,4 +1,7 @@
-//! The state of a run at one time: saved, restored, carried over to another choice of states.
+//! The state of a run at one time: saved, stored as bytes, and restored, also for another choice of states.
+//!
+//! It holds all variables by name, not only the states, so that algebraic loops and discrete values continue from their
+//! last solution.
 
 use super::past::DelayHistory;
 use crate::lower::ExecutableSystem;
@@ -6,36 +9,37 @@ use bramah_expr::VarId;
 use bramah_model::flat::Variability;
 use rustc_hash::FxHashMap;
 
-/// Everything a run needs to go on: values of all variables, of derivatives, and from before the last event.
+/// Everything that a run needs to continue from one time. Vectors have one entry per variable of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Seconds.
+    /// The time in seconds.
     pub time: f64,
-    /// Names of the variables, in the order of the values.
+    /// Names of the variables.
     pub names: Vec<String>,
     /// Value of each variable.
     pub values: Vec<f64>,
-    /// Derivative of each variable; NaN where the model has none.
+    /// Derivative of each variable; NaN where the model does not use it.
     pub derivatives: Vec<f64>,
-    /// What delays read of the time before; empty where there are none.
+    /// The history that delays read; empty without delays.
     pub past: DelayHistory,
 }
 
 impl State {
-    /// Whether it is of a model with these variables.
+    /// Whether the state belongs to a model with the same variables in the same order.
     pub fn fits(&self, system: &ExecutableSystem) -> bool {
         let variables = &system.dae.variables;
         self.names.len() == variables.len() && self.names.iter().zip(variables).all(|(n, v)| *n == v.name)
     }
 
-    /// The state as bytes, for a model with the same variables.
+    /// The state as bytes, for a model with the same variables: count, time, values, derivatives, history, all as
+    /// little-endian 64-bit numbers. Names are left out.
     pub fn bytes(&self) -> Vec<u8> {
         let counts = [self.values.len() as f64];
         let numbers = counts.iter().chain([&self.time]).chain(&self.values).chain(&self.derivatives).copied();
         numbers.chain(self.past.numbers()).flat_map(f64::to_le_bytes).collect()
     }
 
-    /// What [`State::bytes`] has written of a model with these variables; `None` for other bytes.
+    /// Reads the bytes of [`State::bytes`] for a model with these variables; `None` for other bytes.
     pub fn from_bytes(names: Vec<String>, bytes: &[u8]) -> Option<Self> {
         let (words, rest) = bytes.as_chunks::<8>();
         let numbers: Vec<f64> = words.iter().map(|w| f64::from_le_bytes(*w)).collect();
@@ -48,7 +52,7 @@ impl State {
         Some(State { time: numbers[1], names, values, derivatives, past })
     }
 
-    /// The state in `values`.
+    /// Copies the state from the slots in `values`.
     pub fn save(system: &ExecutableSystem, time: f64, values: &[f64], past: DelayHistory) -> Self {
         let ids = || (0..).map(VarId).take(system.dae.variables.len());
         State {
@@ -60,11 +64,13 @@ impl State {
         }
     }
 
-    /// Writes the state into `values`; variables it does not know keep theirs. Parameters are left alone,
-    /// but those that initialization found are part of the state.
+    /// Writes the state into `values`. Variables that it does not contain keep their values.
+    ///
+    /// Parameters keep theirs too, except those that the initial system had found, which are part of the state.
     pub fn restore(&self, system: &ExecutableSystem, values: &mut [f64]) {
         let same = self.names.len() == system.dae.variables.len();
         let same = same && self.names.iter().zip(&system.dae.variables).all(|(n, v)| *n == v.name);
+        // names are needed only where the variables differ, for example after another choice of states
         let by_name: FxHashMap<&str, usize> = if same {
             FxHashMap::default()
         } else {
@@ -78,6 +84,7 @@ impl State {
                 continue;
             }
             values[system.layout.var(v)] = self.values[from];
+            // a saved state is consistent, so `pre(v)` equals `v`
             if let Some(pre) = system.layout.pre(v) {
                 values[pre] = self.values[from];
             }

@@ -1,17 +1,18 @@
-//! What an integrator does with long vectors, in the widest registers that the processor has. Elements are computed by
-//! the same operations in the same order everywhere, and sums run over lanes whose number is fixed, so that the bits do
-//! not depend on the processor.
+//! Vector operations for IDA, in the widest registers that the processor has.
+//!
+//! `ida/operations` calls them for long vectors. Elements are computed by the same operations in the same order on
+//! every processor. Sums run over a fixed number of lanes. So the bits of the results do not depend on the processor.
 
 use pulp::Arch;
 
-/// Vectors shorter than this are not worth the choice of registers.
+/// Length from which vectors use these operations. For shorter ones the choice of registers costs too much.
 pub const LONG: usize = 64;
-/// How many values of each vector are combined before the next ones: they stay in the nearest cache.
+/// Number of elements that are combined before the next ones, so that they stay in the first-level cache.
 const BLOCK: usize = 512;
-/// Sums that run beside each other.
+/// Number of partial sums of a norm.
 const LANES: usize = 8;
 
-/// z = a x
+/// `z = a x`
 pub fn scale(a: f64, x: &[f64], z: &mut [f64]) {
     if a == 1.0 {
         z.copy_from_slice(x);
@@ -20,14 +21,16 @@ pub fn scale(a: f64, x: &[f64], z: &mut [f64]) {
     }
 }
 
-/// z = a z
+/// `z = a z`
 pub fn scale_in_place(a: f64, z: &mut [f64]) {
     if a != 1.0 {
         Arch::new().dispatch(|| z.iter_mut().for_each(|z| *z *= a));
     }
 }
 
-/// z = a x + b y; where the factors are the same or opposite, the sum or difference is taken first.
+/// `z = a x + b y`
+///
+/// Where the factors are equal or opposite, the sum or difference is taken first.
 pub fn sum(a: f64, x: &[f64], b: f64, y: &[f64], z: &mut [f64]) {
     Arch::new().dispatch(|| {
         let all = z.iter_mut().zip(x.iter().zip(y));
@@ -41,7 +44,7 @@ pub fn sum(a: f64, x: &[f64], b: f64, y: &[f64], z: &mut [f64]) {
     });
 }
 
-/// z = a x + b z, as [`sum`].
+/// `z = a x + b z`, with the same rule as [`sum`].
 pub fn add(a: f64, x: &[f64], b: f64, z: &mut [f64]) {
     Arch::new().dispatch(|| {
         let all = z.iter_mut().zip(x);
@@ -58,7 +61,7 @@ pub fn add(a: f64, x: &[f64], b: f64, z: &mut [f64]) {
     });
 }
 
-/// z = c_0 x_0 + c_1 x_1 + ..., added in this order, each vector read once.
+/// `z = c_0 x_0 + c_1 x_1 + ...`, added in this order. Each vector is read once.
 pub fn combine(c: &[f64], x: &[&[f64]], z: &mut [f64]) {
     Arch::new().dispatch(|| {
         for (k, z) in z.chunks_mut(BLOCK).enumerate() {
@@ -71,7 +74,7 @@ pub fn combine(c: &[f64], x: &[&[f64]], z: &mut [f64]) {
     });
 }
 
-/// z = z + c_0 x_0 + ..., likewise; z is the first of the vectors, its own factor is given.
+/// `z = own z + c_0 x_0 + ...`, added in this order.
 pub fn combine_onto(own: f64, c: &[f64], x: &[&[f64]], z: &mut [f64]) {
     Arch::new().dispatch(|| {
         for (k, z) in z.chunks_mut(BLOCK).enumerate() {
@@ -86,7 +89,7 @@ pub fn combine_onto(own: f64, c: &[f64], x: &[&[f64]], z: &mut [f64]) {
     });
 }
 
-/// The root of the mean square of x w.
+/// The root of the mean square of `x w`, the norm of IDA's error test.
 pub fn weighted_norm(x: &[f64], w: &[f64]) -> f64 {
     let squares = Arch::new().dispatch(|| {
         let mut sums = [0.0; LANES];
@@ -98,6 +101,7 @@ pub fn weighted_norm(x: &[f64], w: &[f64]) -> f64 {
                 *sum += one * one;
             }
         }
+        // the lanes are added in a fixed order, then the elements that fill no lane
         rest.fold(sums.iter().sum::<f64>(), |sum, (x, w)| sum + (x * w) * (x * w))
     });
     (squares / x.len() as f64).sqrt()

@@ -1,5 +1,11 @@
-//! A model with hypotheses attached and everything that is free in it: what it leaves of the recordings, and how that
-//! depends on what is free.
+//! A candidate: a model with hypotheses attached, its free coordinates, and its residuals on recordings.
+//!
+//! Enters: an assembled model with coordinates (from `select::models`) and a point `x`. Leaves: residuals, their
+//! sensitivities as sums of products, or only the cost. Recordings are simulated in parallel.
+//! Called by `map` (fits), `select::screen` (linear models) and `select::folds` (left-out data).
+//!
+//! Coordinates are scaled parameters: tolerance parameters in units of their tolerance, coefficients in their typical
+//! size, positive shapes by their logarithm. All bounds, priors and sensitivities are in these units.
 
 use super::super::data::RecordingData;
 use super::super::policy::{BENT, PIECES};
@@ -15,105 +21,106 @@ use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Something that may be chosen: a parameter in its tolerance, a coefficient or shape of an effect.
+/// A free coordinate of a fit: a parameter within its tolerance, or a coefficient or shape of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitCoordinate {
-    /// Which parameter of the model it is.
+    /// Index into the parameters of the model's plan.
     pub parameter: usize,
-    /// What is one unit of it: a size of the parameter, or of its logarithm.
+    /// One unit of the coordinate in SI units; 1 for a logarithm.
     pub scale: f64,
-    /// It counts by its logarithm: it may be off by orders of magnitude.
+    /// The coordinate is the natural logarithm of the parameter, which may be off by orders of magnitude.
     pub logarithm: bool,
-    /// Least value, in units.
+    /// Lower bound, in units.
     pub low: f64,
-    /// Greatest value, in units.
+    /// Upper bound, in units.
     pub high: f64,
-    /// Mean and standard deviation in units, for what is known of it beforehand.
+    /// Mean and standard deviation of the prior, in units; `None` without a prior.
     pub prior: Option<(f64, f64)>,
 }
 
 impl FitCoordinate {
-    /// A parameter between bounds, by its value.
+    /// A coordinate proportional to its parameter; scale and bounds in SI units.
     pub fn plain(parameter: usize, scale: f64, low: f64, high: f64) -> Self {
         FitCoordinate { parameter, scale, logarithm: false, low: low / scale, high: high / scale, prior: None }
     }
 
-    /// A positive parameter between bounds, by its logarithm.
+    /// A coordinate that is the logarithm of a positive parameter; bounds in SI units.
     pub fn by_logarithm(parameter: usize, low: f64, high: f64) -> Self {
         FitCoordinate { parameter, scale: 1.0, logarithm: true, low: low.ln(), high: high.ln(), prior: None }
     }
 
-    /// The parameter's value.
+    /// Value of the parameter, SI.
     pub fn value(&self, x: f64) -> f64 {
         if self.logarithm { x.exp() } else { x * self.scale }
     }
 
-    /// Where a value is, within the bounds.
+    /// Coordinate of a parameter's value, moved into the bounds.
     pub fn of(&self, value: f64) -> f64 {
         let x = if self.logarithm { value.ln() } else { value / self.scale };
         x.clamp(self.low, self.high)
     }
 
-    /// How far a unit moves the parameter.
+    /// Derivative of the parameter by the coordinate.
     pub fn slope(&self, x: f64) -> f64 {
         if self.logarithm { x.exp() } else { self.scale }
     }
 
-    /// Distance from what is known beforehand, in deviations.
+    /// Distance from the mean of the prior, in standard deviations; 0 without a prior.
     pub fn distance(&self, x: f64) -> f64 {
         self.prior.map_or(0.0, |(mean, sigma)| (x - mean) / sigma)
     }
 }
 
-/// A model with hypotheses attached.
+/// A model with hypotheses attached and everything that is free in it.
 #[derive(Clone, Debug)]
 pub struct CandidateModel {
-    /// The hypotheses, with the values that are not free.
+    /// The attached hypotheses with the values of what is not free.
     pub causes: Vec<HypothesisValues>,
-    /// Of so many, the first ones, widths are free.
+    /// Number of causes, from the first, whose widths are free: those of accepted effects.
     pub taken: usize,
-    /// The model.
+    /// The compiled model.
     pub model: AssembledModel,
-    /// What is free: tolerances first, then the hypotheses' own in their order.
+    /// Free coordinates: tolerance parameters first, then those of the causes in their order.
     pub coordinates: Vec<FitCoordinate>,
-    /// How many coordinates without a prior the hypotheses have of their own: widths are not among them.
+    /// Number of the causes' coordinates without a prior, which measures how complex they are. Widths do not count.
     pub own: usize,
-    /// Per signal its unit, as written.
+    /// Unit of each signal as written.
     pub units: Vec<String>,
-    /// Per signal the deviation that counts as one where a recording begins.
+    /// Per signal the error that counts as one standard deviation where a recording begins, SI.
     pub deviations: Vec<f64>,
-    /// How far the first state of each train recording was from the model's own start where that was found last, in sizes;
-    /// nothing where it was not.
+    /// Per train recording the distance of its last initial state from the model's own start, in sizes: the first guess
+    /// of the next run. Empty where there was no run yet.
     pub off: Vec<Vec<f64>>,
-    /// Steps that a simulation of each train recording may take; any number where nothing is said.
+    /// Per train recording the steps that a simulation may take; empty means any number.
     pub allowed: Vec<usize>,
 }
 
-/// What a model leaves of one recording: per signal measured minus simulated, of the samples behind the beginning; NaN
-/// where nothing was measured.
+/// Residuals of one recording: per signal measured minus simulated, SI, of the samples behind the beginning; NaN where
+/// nothing was measured.
 pub type RecordingResiduals = Vec<Vec<f64>>;
 
-/// Sums over samples of the slopes' products with each other, and with the errors.
+/// Sums over samples of products of sensitivities `y` and errors `e`: all that a Gauss-Newton step needs.
 #[derive(Clone, Debug)]
 pub struct SensitivityProducts {
-    /// Slopes with slopes.
+    /// Sum of y y', coordinates by coordinates.
     pub slopes: DMatrix<f64>,
-    /// Slopes with errors.
+    /// Sum of y e, per coordinate.
     pub errors: DVector<f64>,
 }
 
 impl SensitivityProducts {
-    /// Sums over no samples.
+    /// Sums over no samples, for `width` coordinates.
     pub fn none(width: usize) -> Self {
         SensitivityProducts { slopes: DMatrix::zeros(width, width), errors: DVector::zeros(width) }
     }
 
+    /// Adds one sample.
     fn add(&mut self, row: &[f64], error: f64) {
         exponential::add_outer(&mut self.slopes, 1.0, row, row);
         self.errors.iter_mut().zip(row).for_each(|(sum, y)| *sum += y * error);
     }
 
-    /// The same with coordinates behind them that nothing depends on.
+    /// The sums with further coordinates behind, up to `width`, on which nothing depends.
     pub fn with_idle(self, width: usize) -> Self {
         SensitivityProducts {
             slopes: self.slopes.resize(width, width, 0.0),
@@ -121,31 +128,37 @@ impl SensitivityProducts {
         }
     }
 
-    /// By how much squared errors fall in the linear model where the coordinates move like this.
+    /// Decrease of the squared errors in the linear model if the coordinates change by `change`.
     pub fn gain(&self, change: &DVector<f64>) -> f64 {
         2.0 * self.errors.dot(change) - change.dot(&(&self.slopes * change))
     }
 
-    /// Adds others, weighed.
+    /// Adds other sums times a weight.
     pub fn add_weighed(&mut self, other: &SensitivityProducts, weight: f64) {
         self.slopes += &other.slopes * weight;
         self.errors.axpy(weight, &other.errors, 1.0);
     }
 }
 
-/// Sums of coordinates in front with all, and of each group behind them with itself.
+/// Sums for groups of coordinates that are tried one at a time: products of the common coordinates in front with all,
+/// and of each group with itself. Products between groups are not needed.
 struct GroupedProducts {
+    /// Common coordinates by all coordinates.
     across: DMatrix<f64>,
+    /// Products with the errors, per coordinate.
     errors: DVector<f64>,
+    /// Per group its own products.
     own: Vec<DMatrix<f64>>,
 }
 
 impl GroupedProducts {
+    /// Sums over no samples.
     fn none(common: usize, width: usize, groups: &[Range<usize>]) -> Self {
         let own = groups.iter().map(|g| DMatrix::zeros(g.len(), g.len())).collect();
         GroupedProducts { across: DMatrix::zeros(common, width), errors: DVector::zeros(width), own }
     }
 
+    /// Adds one sample.
     fn add(&mut self, row: &[f64], error: f64, groups: &[Range<usize>]) {
         let common = self.across.nrows();
         exponential::add_outer(&mut self.across, 1.0, &row[..common], row);
@@ -155,7 +168,7 @@ impl GroupedProducts {
         }
     }
 
-    /// The sums of one group with what is in front.
+    /// Sums of the common coordinates and the k-th group, as if there were no others.
     fn of(&self, k: usize, group: &Range<usize>) -> SensitivityProducts {
         let (common, len) = (self.across.nrows(), group.len());
         let mut all = SensitivityProducts::none(common + len);
@@ -170,37 +183,39 @@ impl GroupedProducts {
     }
 }
 
-/// A model at one point: what it leaves of all train recordings, and how that depends on the coordinates.
+/// Residuals of a model on all train recordings at one point, and their sensitivities as sums of products.
 #[derive(Clone, Debug)]
 pub struct ModelEvaluation {
-    /// Per recording.
+    /// Residuals per recording.
     pub errors: Vec<RecordingResiduals>,
-    /// Per recording, piece and signal.
+    /// Sums of products per recording, piece and signal.
     pub products: Vec<Vec<Vec<SensitivityProducts>>>,
-    /// Per recording how far its first state is from the model's own start, in sizes.
+    /// Per recording the distance of its initial state from the model's own start, in sizes.
     pub off: Vec<Vec<f64>>,
-    /// Per recording the steps that the simulation took.
+    /// Per recording the number of steps of the simulation.
     pub steps: Vec<usize>,
 }
 
-/// What came of one recording.
+/// The same for one recording.
 struct RecordingEvaluation {
+    /// Its residuals.
     errors: RecordingResiduals,
-    /// Per piece and signal.
+    /// Sums of products per piece and signal.
     products: Vec<Vec<SensitivityProducts>>,
+    /// Initial state and steps.
     gone: CompletedRun,
 }
 
-/// A run that came to its end.
+/// What is known of a run that reached its end.
 struct CompletedRun {
-    /// How far its first state is from the model's own start, in sizes.
+    /// Distance of its initial state from the model's own start, in sizes.
     off: Vec<f64>,
-    /// Steps that it took.
+    /// Number of its steps.
     steps: usize,
 }
 
 impl ModelEvaluation {
-    /// Weighed sums over the pieces wanted, by recording and piece.
+    /// Weighted sums over signals and over the pieces for which `wanted(recording, piece)` holds.
     pub fn sums(
         &self,
         width: usize,
@@ -216,7 +231,7 @@ impl ModelEvaluation {
         sum
     }
 
-    /// Sums of each signal over all recordings.
+    /// Sums of each signal over all recordings and pieces, without weights.
     pub fn by_signal(&self, width: usize) -> Vec<SensitivityProducts> {
         let signals = self.errors.first().map_or(0, Vec::len);
         let mut sums = vec![SensitivityProducts::none(width); signals];
@@ -227,43 +242,43 @@ impl ModelEvaluation {
     }
 }
 
-/// The piece of a recording that a counted sample belongs to.
+/// The piece of a recording to which a counted sample belongs, out of `samples`.
 pub fn piece(sample: usize, samples: usize) -> usize {
     (sample * PIECES / samples.max(1)).min(PIECES - 1)
 }
 
 impl CandidateModel {
-    /// Values of all parameters of the model.
+    /// Values of all parameters of the plan at a point, SI.
     pub fn theta(&self, x: &[f64]) -> Vec<f64> {
         let mut theta = self.model.theta.clone();
         self.coordinates.iter().zip(x).for_each(|(c, x)| theta[c.parameter] = c.value(*x));
         theta
     }
 
-    /// Where the model's parameters are now.
+    /// The coordinates of the model's present parameter values, moved into the bounds.
     pub fn present(&self) -> Vec<f64> {
         self.coordinates.iter().map(|c| c.of(self.model.theta[c.parameter])).collect()
     }
 
-    /// What the prior costs, in squared deviations.
+    /// Cost of the prior at a point, in squared deviations.
     pub fn prior(&self, x: &[f64]) -> f64 {
         self.coordinates.iter().zip(x).map(|(c, x)| c.distance(*x).powi(2)).sum()
     }
 
-    /// Whether a parameter is off beyond what its tolerance leaves.
+    /// Whether a parameter is more than [`BENT`] tolerances off its data sheet. Widths (logarithms) do not count.
     pub fn is_bent(&self, x: &[f64]) -> bool {
         self.coordinates.iter().zip(x).any(|(c, x)| !c.logarithm && c.distance(*x).abs() > BENT)
     }
 
-    /// Values for one recording: parameters of the others are nothing there.
+    /// Parameter values for the `number`-th train recording: coefficients that belong to other recordings are zero.
     fn theta_of(&self, x: &[f64], number: Option<usize>) -> Vec<f64> {
         let mut theta = self.theta(x);
         self.model.own.iter().filter(|own| Some(own.1) != number).for_each(|own| theta[own.0] = 0.0);
         theta
     }
 
-    /// What the model leaves of a recording: of the train recordings the `number`-th, or any other. `None` where it does
-    /// not reach the end.
+    /// Residuals of a recording without sensitivities. `number`: its index among the train recordings, `None` for any
+    /// other. `None` if the simulation stops early.
     pub fn errors(&self, x: &[f64], recording: &RecordingData, number: Option<usize>) -> Option<RecordingResiduals> {
         let mut errors = vec![Vec::with_capacity(recording.len()); self.deviations.len()];
         self.run(x, recording, number, false, |errors_of, _| {
@@ -273,12 +288,14 @@ impl CandidateModel {
         Some(errors)
     }
 
-    /// What the model leaves of a recording that took no part, where it has values of its own for each recording: each piece
-    /// with those that fit the other pieces best. `None` where it does not reach the end.
+    /// Residuals of a recording that took no part, for a model with coefficients per recording.
+    /// Each piece is simulated with the coefficients that fit the other pieces best. `None` if the simulation stops
+    /// early.
     pub fn errors_elsewhere(&self, x: &[f64], recording: &RecordingData) -> Option<RecordingResiduals> {
-        // the values of the first recording stand for those of this one
+        // the coefficients of the first train recording take the place of those of this one
         let is_own = |c: &FitCoordinate| self.model.own.contains(&(c.parameter, 0));
         let own: Vec<usize> = (0..x.len()).filter(|&i| is_own(&self.coordinates[i])).collect();
+        // the coefficients of this recording are found by one linear step from zero
         let mut without = x.to_vec();
         own.iter().for_each(|&i| without[i] = self.coordinates[i].of(0.0));
         let RecordingEvaluation { mut errors, products, .. } = self.evaluate_one(&without, recording, 0, None)?;
@@ -294,7 +311,7 @@ impl CandidateModel {
         Some(errors)
     }
 
-    /// Some coordinates where they fit some pieces best, the others as they are.
+    /// The coordinates `x` with the coordinates `own` where the linear model fits the given pieces best.
     fn moved<'a>(
         &self,
         x: &[f64],
@@ -317,7 +334,7 @@ impl CandidateModel {
         x
     }
 
-    /// Begins where a model much like it did: states of one name are the same.
+    /// Takes over the initial states of another candidate, state by state by name, as the first guess.
     pub fn begins_as(&mut self, other: &CandidateModel) {
         let name = |c: &CandidateModel, v: VarId| c.model.plan.system.dae.variables[v.index()].name.clone();
         let known: BTreeMap<String, usize> =
@@ -327,7 +344,7 @@ impl CandidateModel {
         self.off = other.off.iter().map(guess).collect();
     }
 
-    /// When the simulation of a train recording stops before its end, s.
+    /// Time at which the simulation of a recording stops before its end, s; `None` if it reaches the end.
     pub fn stops(&self, x: &[f64], recording: &RecordingData) -> Option<f64> {
         let mut sample = recording.settled();
         let ends = self.run(x, recording, None, false, |_, _| {
@@ -337,24 +354,25 @@ impl CandidateModel {
         ends.is_none().then(|| recording.times[sample.min(recording.len() - 1)])
     }
 
-    /// What the model leaves of the train recordings. `None` where it does not reach the end of one.
+    /// Residuals of all train recordings. `None` if a simulation stops early.
     pub fn all_errors(&self, x: &[f64], train: &[RecordingData]) -> Option<Vec<RecordingResiduals>> {
         train.par_iter().enumerate().map(|(i, r)| self.errors(x, r, Some(i))).collect()
     }
 
-    /// How the simulated signals of a train recording depend on the coordinates: samples by signals by coordinates. `None`
-    /// where the model does not reach the end.
+    /// Sensitivities of the simulated signals of a train recording: samples by signals by coordinates, SI per unit.
+    /// `None` if the simulation stops early.
     pub fn slopes(&self, x: &[f64], recording: &RecordingData, number: usize) -> Option<Vec<f32>> {
         let mut all = Vec::with_capacity(recording.len() * self.deviations.len() * x.len());
         self.run(x, recording, Some(number), true, |_, slopes| {
+            // single precision: these matrices are large, and only corrections and standard deviations use them
             all.extend(slopes.into_iter().flat_map(|s| s.iter()).map(|v| *v as f32));
             ControlFlow::Continue(())
         })?;
         Some(all)
     }
 
-    /// Weighed squares and the prior at a point, as far as they stay within a bound: a run ends where they pass it. `None`
-    /// there, and where the model does not reach the end of a recording.
+    /// Cost (weighted squares and prior) at a point, without sensitivities.
+    /// `None` if it exceeds `bound`, in which case the runs end early, or if a simulation stops early.
     pub fn cost_within(&self, x: &[f64], train: &[RecordingData], weights: &SignalWeights, bound: f64) -> Option<f64> {
         let limit = ResidualLimit::new(weights, self.prior(x), bound);
         let one = |(number, recording): (usize, &RecordingData)| {
@@ -364,16 +382,16 @@ impl CandidateModel {
             Some(own)
         };
         let all: Option<Vec<f64>> = train.par_iter().enumerate().map(one).collect();
-        // summed in order, so that it does not depend on who came first
+        // summed in the order of the recordings, so that rounding does not depend on the threads
         Some(all?.iter().sum::<f64>() + self.prior(x)).filter(|sum| *sum <= bound)
     }
 
-    /// What it leaves of the train recordings, with slopes.
+    /// Residuals and sensitivities on all train recordings. `None` if a simulation stops early.
     pub fn evaluate(&self, x: &[f64], train: &[RecordingData]) -> Option<ModelEvaluation> {
         self.evaluated(x, train, None)
     }
 
-    /// The same, as far as weighed squares and the prior stay within a bound: a run ends where they pass it.
+    /// The same while the cost stays within `bound`; `None` also if it exceeds it.
     pub fn evaluate_within(
         &self,
         x: &[f64],
@@ -384,11 +402,13 @@ impl CandidateModel {
         self.evaluated(x, train, Some(&ResidualLimit::new(weights, self.prior(x), bound)))
     }
 
+    /// Evaluates all recordings in parallel, within a limit of the cost if there is one.
     fn evaluated(&self, x: &[f64], train: &[RecordingData], limit: Option<&ResidualLimit>) -> Option<ModelEvaluation> {
         let one = |(i, r): (usize, &RecordingData)| self.evaluate_one(x, r, i, limit);
         let all: Option<Vec<_>> = train.par_iter().enumerate().map(one).collect();
         let mut found =
             ModelEvaluation { errors: Vec::new(), products: Vec::new(), off: Vec::new(), steps: Vec::new() };
+        // collected in the order of the recordings, whatever the threads did
         for RecordingEvaluation { errors, products, gone } in all? {
             found.errors.push(errors);
             found.products.push(products);
@@ -398,7 +418,7 @@ impl CandidateModel {
         Some(found)
     }
 
-    /// What the model leaves of the `number`-th train recording.
+    /// Residuals and sensitivities of the `number`-th train recording.
     fn evaluate_one(
         &self,
         x: &[f64],
@@ -412,6 +432,7 @@ impl CandidateModel {
         let mut sums = vec![vec![SensitivityProducts::none(width); signals]; PIECES];
         let (mut sample, mut cost) = (0, 0.0);
         let gone = self.run(x, recording, Some(number), true, |errors_of, slopes| {
+            // sums are kept by piece, so that cross-validation needs no further run
             let into = &mut sums[piece(sample, samples)];
             sample += 1;
             for (i, e) in errors_of.iter().enumerate() {
@@ -428,8 +449,8 @@ impl CandidateModel {
         Some(RecordingEvaluation { errors, products: sums, gone })
     }
 
-    /// Groups of coordinates that are tried one at a time beside those in front of them all: of each the sums with these,
-    /// signal by signal. `None` where the model does not reach the end of a recording.
+    /// Sensitivity products of groups of coordinates that are tried one at a time beside the common ones in front.
+    /// Outer index group, inner index signal. `None` if a simulation stops early.
     pub fn groups(
         &self,
         x: &[f64],
@@ -451,7 +472,9 @@ impl CandidateModel {
         Some(groups.iter().enumerate().map(|(k, group)| sums.iter().map(|s| s.of(k, group)).collect()).collect())
     }
 
-    /// Goes through a recording.
+    /// Runs through a recording; `at` sees the errors of each counted sample and, if `slopes`, the sensitivities of the
+    /// signals. First the initial state is estimated from the beginning. `None` if the simulation stops early or `at`
+    /// ends it.
     fn run(
         &self,
         x: &[f64],
@@ -463,6 +486,7 @@ impl CandidateModel {
         let theta = self.theta_of(x, number);
         let model = &self.model;
         let acts = |c: &FitCoordinate| !model.own.iter().any(|own| own.0 == c.parameter && Some(own.1) != number);
+        // a coefficient of another recording has no influence on this one
         let moved = |(c, x): (&FitCoordinate, &f64)| (c.parameter, if acts(c) { c.slope(*x) } else { 0.0 });
         let moves: Vec<(usize, f64)> = self.coordinates.iter().zip(x).map(moved).collect();
         let valued = ParameterisedModel {
@@ -474,6 +498,7 @@ impl CandidateModel {
             units: &self.units,
             deviations: &self.deviations,
         };
+        // the initial state is estimated anew in every run, from the last one as the first guess
         let guess = number.and_then(|k| self.off.get(k));
         let mut begun = valued.begin(recording, guess.map(Vec::as_slice), slopes.then_some(&moves[..]))?;
         let from = recording.settled();
@@ -489,7 +514,7 @@ impl CandidateModel {
             left: allowed,
         };
         run.along(recording, from..recording.len(), |k, local, slopes| {
-            // the sample at which the run begins is known
+            // the first sample of this run was used for the initial state and does not count
             if k == from {
                 return ControlFlow::Continue(());
             }
@@ -501,21 +526,24 @@ impl CandidateModel {
     }
 }
 
-/// Weighed squares that runs may come to together.
+/// A bound of the cost that parallel runs must not exceed together.
 struct ResidualLimit {
+    /// Weight of a squared error, per signal.
     weight: Vec<f64>,
+    /// Cost that must not be exceeded.
     bound: f64,
-    /// Those of the prior and of runs that have ended.
+    /// Cost of the prior and of the runs that have ended, as the bits of an `f64`.
     gone: AtomicU64,
 }
 
 impl ResidualLimit {
+    /// For given weights, a cost of the prior and a bound.
     fn new(weights: &SignalWeights, prior: f64, bound: f64) -> Self {
         let weight = (0..weights.square.len()).map(|i| weights.weight(i)).collect();
         ResidualLimit { weight, bound, gone: AtomicU64::new(prior.to_bits()) }
     }
 
-    /// Adds the errors of a sample to what a run has come to; whether it may go on.
+    /// Adds the errors of one sample to the cost `own` of a run. `Break` if the bound is exceeded.
     fn count(&self, errors: &[f64], own: &mut f64) -> ControlFlow<()> {
         let squares = errors.iter().zip(&self.weight).filter(|(e, _)| e.is_finite()).map(|(e, w)| w * e * e);
         *own += squares.sum::<f64>();
@@ -523,8 +551,9 @@ impl ResidualLimit {
         if gone + *own > self.bound { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
-    /// Adds what a run came to.
+    /// Adds the cost of a run that has ended.
     fn add(&self, own: f64) {
+        // there is no atomic sum of f64, hence the loop over the bits
         let add = |sum: u64| (f64::from_bits(sum) + own).to_bits();
         let mut known = self.gone.load(Ordering::Relaxed);
         while let Err(now) = self.gone.compare_exchange_weak(known, add(known), Ordering::Relaxed, Ordering::Relaxed) {

@@ -1,26 +1,31 @@
-//! One step of a linear system: the matrix exponential and its integrals.
+//! One step of a linear system `x' = A x`: the matrix exponential and its first two integrals, with fast small
+//! products.
+//!
+//! Called by `simulation` for every step, and by `candidate` for sums of products. Scaling and squaring after Higham,
+//! Functions of Matrices, 2008, ch. 10, of a balanced matrix. Results are reused while matrix and step hardly change.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Products with up to so many terms a sum are done by plain loops.
+/// Products with at most so many terms per sum use plain loops instead of a packed `gemm`.
 const LARGE: usize = 64;
-/// Taylor coefficients 1/(k + 1)! of phi; with arguments below [`SMALL`] the error is under 1e-8.
+/// Taylor coefficients 1/(k + 1)! of phi(z) = (e^z - 1)/z. Below a norm of [`SMALL`] the error is under 1e-8.
 const COEFFICIENTS: [f64; 7] = [1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0, 1.0 / 720.0, 1.0 / 5040.0];
-/// The largest norm at which the polynomial is used; larger ones are halved until they fit.
+/// Largest norm at which the polynomial is used; larger matrices are halved until they fit.
 const SMALL: f64 = 0.3;
-/// A step within so much of the last one's length is as long, and a system whose matrix times the step is so near to the
-/// last one's has its exponential: what that leaves of a step's change is less than a sensor shows of it.
+/// Relative difference up to which two steps count as equally long.
 const SAME_LENGTH: f64 = 1e-9;
+/// Change of matrix times step up to which the exponential of the last matrix is reused. The error that this leaves in
+/// the change of a step is less than a sensor shows of it.
 const SAME_SYSTEM: f64 = 3e-4;
-/// Halvings at most: beyond, the step is far longer than any time constant that matters.
+/// Most halvings. Beyond, the step is far longer than any time constant that matters.
 const MOST_HALVINGS: i32 = 40;
 
-/// Whether a step is as long as another one: time stamps are rounded.
+/// Whether two steps count as equally long. Time stamps are rounded, so equal steps differ slightly.
 pub fn as_long(h: f64, other: f64) -> bool {
     (h - other).abs() <= SAME_LENGTH * h
 }
 
-/// `out = a b + beta out` without the packing that pays for large matrices only.
+/// `out = a b + beta out`. Small matrices avoid the packing that only pays for large ones.
 pub fn multiply(out: &mut DMatrix<f64>, a: &DMatrix<f64>, b: &DMatrix<f64>, beta: f64) {
     if a.ncols() > LARGE {
         out.gemm(1.0, a, b, beta);
@@ -34,8 +39,10 @@ pub fn apply(out: &mut DVector<f64>, a: &DMatrix<f64>, x: &DVector<f64>, beta: f
     product(out.as_mut_slice(), a, x.as_slice(), beta);
 }
 
+/// `out = a b + beta out` on column-major slices.
 fn product(out: &mut [f64], a: &DMatrix<f64>, b: &[f64], beta: f64) {
     let (rows, inner) = a.shape();
+    // not multiplied by zero: `out` may hold NaN
     if beta == 0.0 {
         out.fill(0.0);
     } else if beta != 1.0 {
@@ -44,23 +51,30 @@ fn product(out: &mut [f64], a: &DMatrix<f64>, b: &[f64], beta: f64) {
     dispatch(MatrixProduct { out, a: a.as_slice(), b, rows, inner, used: rows });
 }
 
+/// Runs a product with the widest instruction set of this processor. Empty matrices are left out.
 fn dispatch(product: MatrixProduct) {
     if product.rows > 0 && product.inner > 0 {
         pulp::Arch::new().dispatch(product);
     }
 }
 
-/// `out += a b` in the first rows, compiled once for every instruction set; the best one is chosen where it runs.
+/// `out += a b` in the first `used` rows. The body is compiled for every instruction set and chosen at run time.
 struct MatrixProduct<'a> {
+    /// Column-major, `rows` rows.
     out: &'a mut [f64],
+    /// Column-major, `rows` by `inner`.
     a: &'a [f64],
+    /// Column-major, `inner` rows.
     b: &'a [f64],
+    /// Rows of `out` and `a`.
     rows: usize,
+    /// Columns of `a`, rows of `b`.
     inner: usize,
+    /// Rows that are computed.
     used: usize,
 }
 
-// what is no closure is compiled into the function that may use the wide registers
+// A trait implementation instead of a closure: only its body is compiled with the wide registers enabled.
 impl pulp::WithSimd for MatrixProduct<'_> {
     type Output = ();
 
@@ -70,18 +84,22 @@ impl pulp::WithSimd for MatrixProduct<'_> {
     }
 }
 
-/// `out += factor x y'`.
+/// `out += factor x y'`, column by column.
 pub fn add_outer(out: &mut DMatrix<f64>, factor: f64, x: &[f64], y: &[f64]) {
     if !x.is_empty() {
         pulp::Arch::new().dispatch(OuterProduct { out: out.as_mut_slice(), factor, x, y });
     }
 }
 
-/// `out += factor x y'`, likewise.
+/// `out += factor x y'` for the dispatch by instruction set.
 struct OuterProduct<'a> {
+    /// Column-major, as many rows as `x` has values.
     out: &'a mut [f64],
+    /// Factor of the product.
     factor: f64,
+    /// Left vector: the rows of `out`.
     x: &'a [f64],
+    /// Right vector: the columns of `out`.
     y: &'a [f64],
 }
 
@@ -90,6 +108,7 @@ impl pulp::WithSimd for OuterProduct<'_> {
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
+        // the factor goes into one scalar per column, so that the inner loop is one multiplication and addition
         for (column, y) in self.out.chunks_exact_mut(self.x.len()).zip(self.y) {
             let factor = self.factor * y;
             column.iter_mut().zip(self.x).for_each(|(v, x)| *v += factor * x);
@@ -97,7 +116,7 @@ impl pulp::WithSimd for OuterProduct<'_> {
     }
 }
 
-/// `out += a b` in bands of eight rows and one of what remains, whose sums stay in registers.
+/// `out += a b` in bands of eight rows and one band of what remains, whose sums stay in registers.
 #[inline(always)]
 fn add_product(product: MatrixProduct) {
     let MatrixProduct { out, a, b, rows, inner, used } = product;
@@ -107,6 +126,7 @@ fn add_product(product: MatrixProduct) {
             add_band::<8>(to, a, factors, rows, row);
             row += 8;
         }
+        // the size of the last band must be a constant too, so that its loop is unrolled
         match used - row {
             0 => {}
             1 => add_band::<1>(to, a, factors, rows, row),
@@ -120,6 +140,7 @@ fn add_product(product: MatrixProduct) {
     }
 }
 
+/// One column of `out += a b` for `N` rows from `row`.
 #[inline(always)]
 fn add_band<const N: usize>(to: &mut [f64], a: &[f64], factors: &[f64], rows: usize, row: usize) {
     let mut sums = [0.0; N];
@@ -132,27 +153,31 @@ fn add_band<const N: usize>(to: &mut [f64], a: &[f64], factors: &[f64], rows: us
     to[row..row + N].iter_mut().zip(sums).for_each(|(v, sum)| *v += sum);
 }
 
-/// Work space for systems of one size.
+/// The exponential of the last matrix with its integrals, and work space. All matrices are square, states by states.
 #[derive(Clone, Debug)]
 pub struct MatrixExponential {
+    /// Scaled and balanced matrix `h A / 2^k`.
     small: DMatrix<f64>,
+    /// Work space.
     next: DMatrix<f64>,
+    /// Work space of the polynomial.
     high: DMatrix<f64>,
-    /// Units of the states in which they drive each other about as strongly as they are driven.
+    /// Units of the states in which they drive each other about as strongly as they are driven; powers of two.
     balance: Vec<f64>,
-    /// Matrix that the results belong to, and its step; no step yet where it is 0.
+    /// Matrix that the results belong to.
     pub known: DMatrix<f64>,
+    /// Step that the results belong to, s; 0 before the first one.
     length: f64,
     /// exp(h A).
     pub transition: DMatrix<f64>,
-    /// The integral of exp(s A) over s from 0 to h.
+    /// Integral of exp(s A) over s from 0 to h.
     pub integral: DMatrix<f64>,
-    /// The integral of the integral: times how fast a rate grows, what that adds over the step.
+    /// Integral of the integral: times the growth of a rate it gives what that adds over the step.
     pub twice: DMatrix<f64>,
 }
 
 impl MatrixExponential {
-    /// For so many states.
+    /// For a number of states.
     pub fn new(states: usize) -> Self {
         let zeros = || DMatrix::zeros(states, states);
         MatrixExponential {
@@ -168,7 +193,7 @@ impl MatrixExponential {
         }
     }
 
-    /// Computes transition and integrals from A.
+    /// Computes transition and integrals of `a` over the step `h` in s, or keeps those of the last call.
     pub fn compute(&mut self, a: &DMatrix<f64>, h: f64) {
         if !self.is_known(a, h) {
             self.balanced(a);
@@ -178,7 +203,7 @@ impl MatrixExponential {
         }
     }
 
-    /// Whether the exponential is that of the last step.
+    /// Whether the last results may be reused: an equally long step, and columns that changed little in balanced units.
     fn is_known(&self, a: &DMatrix<f64>, h: f64) -> bool {
         let units = &self.balance;
         let moved = |j: usize| {
@@ -188,10 +213,12 @@ impl MatrixExponential {
         as_long(h, self.length) && (0..units.len()).all(|j| moved(j) <= SAME_SYSTEM)
     }
 
-    /// Goes on with the balance: what comes from a state and what goes to it are to be about as much, for then the norm is
-    /// least (Parlett, Reinsch, Numerische Mathematik 13, 1969). Powers of two: nothing is rounded.
+    /// Improves the balance by one sweep over the states (Parlett, Reinsch, Numerische Mathematik 13, 1969).
+    /// What comes from a state and what goes to it should be equal, since the norm is least then. Powers of two avoid
+    /// rounding.
     fn balanced(&mut self, a: &DMatrix<f64>) {
         let n = self.balance.len();
+        // one sweep per call is enough, because the balance of the last matrix is the start
         for i in 0..n {
             let (mut to, mut from) = (0.0, 0.0);
             for j in (0..n).filter(|j| *j != i) {
@@ -206,9 +233,9 @@ impl MatrixExponential {
         }
     }
 
-    /// Scaling and squaring (Higham, Functions of Matrices, 2008, ch. 10): the integral is h phi(h A) with
-    /// phi(z) = (e^z - 1)/z, and phi(2 z) = (e^z + 1) phi(z)/2; the integral of the integral is h^2 phi_2(h A) with
-    /// phi_2(z) = (phi(z) - 1)/z.
+    /// Scaling and squaring (Higham, Functions of Matrices, 2008, ch. 10).
+    /// The integral is h phi(h A) with phi(z) = (e^z - 1)/z, and phi(2 z) = (e^z + 1) phi(z)/2.
+    /// The integral of the integral is h^2 phi_2(h A) with phi_2(z) = (phi(z) - 1)/z.
     fn scale_and_square(&mut self, a: &DMatrix<f64>, h: f64) {
         let MatrixExponential { small, next, high, balance: units, transition, integral, twice, .. } = self;
         let n = small.nrows();
@@ -220,9 +247,11 @@ impl MatrixExponential {
         multiply(next, small, small, 0.0);
         multiply(transition, small, next, 0.0);
         let powers = MatrixPowers { x: small, square: next, cube: transition };
+        // at this point `integral` is phi and `twice` is phi_2 of the scaled matrix, without their factors of time
         powers.series(integral, high, &COEFFICIENTS[..7]);
         powers.series(twice, high, &COEFFICIENTS[1..]);
         *twice *= scale * scale;
+        // e^z = 1 + z phi(z) takes one product more instead of a polynomial of its own
         transition.fill_with_identity();
         multiply(transition, small, integral, 1.0);
         *integral *= scale;
@@ -234,28 +263,33 @@ impl MatrixExponential {
             next.zip_apply(integral, |n, a| *n += length * a);
             std::mem::swap(twice, next);
             length *= 2.0;
-            // integral over 2 s = (exp(s A) + 1) integral over s
+            // this update needs the transition over s, so the transition is squared last
             next.copy_from(integral);
             multiply(next, transition, integral, 1.0);
             std::mem::swap(integral, next);
             multiply(next, transition, transition, 0.0);
             std::mem::swap(transition, next);
         }
+        // back from balanced units
         for matrix in [transition, integral, twice] {
             (0..n).for_each(|j| (0..n).for_each(|i| matrix[(i, j)] *= units[i] / units[j]));
         }
     }
 }
 
-/// The first powers of a matrix.
+/// The first three powers of a matrix.
 struct MatrixPowers<'a> {
+    /// The matrix X.
     x: &'a DMatrix<f64>,
+    /// X squared.
     square: &'a DMatrix<f64>,
+    /// X to the third power.
     cube: &'a DMatrix<f64>,
 }
 
 impl MatrixPowers<'_> {
-    /// c0 + c1 X + ..., up to degree six, as p(X) + X^3 q(X), both quadratic (Paterson and Stockmeyer); `q` is work space.
+    /// c0 + c1 X + ... up to degree six, as p(X) + X^3 q(X) with quadratic p and q (Paterson, Stockmeyer, 1973): one
+    /// product. `q` is work space.
     fn series(&self, out: &mut DMatrix<f64>, q: &mut DMatrix<f64>, c: &[f64]) {
         let sixth = c.get(6).copied().unwrap_or(0.0);
         q.copy_from(self.x);

@@ -1,5 +1,11 @@
-//! Estimates: a model simulated from its inputs alone, with derivatives; its parameters as MAP estimate within their
-//! tolerances, with errors as correlated as they are.
+//! Estimation: simulation of a model from its inputs alone, and the MAP estimate of its parameters.
+//!
+//! - `exponential`: matrix exponential and its integrals. `simulation`: a run along a recording with sensitivities.
+//! - `start`: the initial state of a recording.
+//! - `candidate`: a model with free coordinates, its residuals and their sensitivities.
+//! - `map`: the MAP estimate of the coordinates. `uncertainty`: standard deviations of the estimate.
+//!
+//! Method: `docs/gap_method.md`, "Simulation and fit".
 
 pub mod candidate;
 pub mod exponential;

@@ -1,5 +1,9 @@
-//! Where a recording begins: the state that its first samples lead to, by least squares between what they show and the
-//! model's own start. A recording rarely begins where the model does, and no study says where.
+//! The initial state of a recording, estimated from its first samples.
+//!
+//! A recording rarely begins in the state in which the model starts, and no study says where. The state is a
+//! regularised least squares estimate between what the first samples show and the model's own start, by Gauss-Newton
+//! steps. Enters: a model with values, a recording. Leaves: the state at the last sample of the beginning, with
+//! sensitivities. Called by `candidate` at the beginning of every run. Method: `docs/gap_method.md`, "Simulation".
 
 use super::super::data::{InputSegment, RecordingData};
 use super::super::policy::SURE;
@@ -12,58 +16,61 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// How far states that nothing measures may be from the model's start when a recording begins, as part of their value there or
-/// of their size, whichever is less, and how far one step may lead them.
+/// Standard deviation of the initial value of a state that nothing measures, as part of its value or its size,
+/// whichever is less. One step moves it by no more.
 pub const UNMEASURED: f64 = 0.2;
-/// The same for measured ones, whose steps the data hold: by what the others may be off, some signal changes surely.
+/// The same for a measured state, in sizes. Some signal would surely change if it were wrong, so the data hold its
+/// steps.
 const MEASURED: f64 = 1.0;
-/// Or as part of how far they usually move.
+/// Or as part of how far the state moves in the nominal model.
 pub const TRAVEL: f64 = 0.5;
-/// Absolute temperatures, K.
+/// The same for absolute temperatures, K.
 pub const KELVIN: f64 = 10.0;
-/// And those that begin where the model says.
+/// The same for states that begin where the model says, in sizes.
 const HELD: f64 = 1e-6;
-/// Gauss-Newton steps at most, and halvings of one that leads nowhere.
+/// Most Gauss-Newton steps.
 const ROUNDS: usize = 12;
+/// Most halvings of a step that leads nowhere.
 const HALVINGS: usize = 6;
-/// A step of the first state, in its sizes, that the linear model takes along: what it leaves out grows with the square.
+/// Step in sizes that is applied by the linear model alone, without another run. Its error grows with the square.
 const SMALL: f64 = 1e-2;
 
-/// A model with values, and what is known of its states.
+/// A model with values of its parameters, and what is known of its states.
 #[derive(Clone, Copy)]
 pub struct ParameterisedModel<'a> {
-    /// The model.
+    /// The compiled model with derivatives.
     pub plan: &'a Arc<EvaluationPlan>,
-    /// Values of its parameters.
+    /// Values of its parameters, SI.
     pub theta: &'a [f64],
     /// Usual size of each state, SI.
     pub sizes: &'a [f64],
-    /// What a step may be corrected by, in parts of these sizes.
+    /// Accepted correction of a step, in parts of these sizes.
     pub correction: f64,
-    /// How far each moves in the nominal model, SI; 0 where that is not known.
+    /// How far each state moves in the nominal model, SI; 0 where unknown.
     pub travel: &'a [f64],
-    /// Per signal its unit, as written.
+    /// Unit of each signal as written.
     pub units: &'a [String],
-    /// Per signal the deviation that counts as one.
+    /// Per signal the error that counts as one standard deviation, SI.
     pub deviations: &'a [f64],
 }
 
 /// A model at the last sample of a recording's beginning.
 pub struct InitialFit {
-    /// The model there.
+    /// The evaluator of the model.
     pub local: LocalEvaluator,
-    /// How far its first state was from the model's own start, in sizes.
+    /// Distance of the initial state from the model's own start, in sizes.
     pub off: Vec<f64>,
-    /// Its state, SI.
+    /// State at the last sample of the beginning, SI.
     pub state: Vec<f64>,
-    /// How the state depends on what was asked for.
+    /// Sensitivities of that state to the parameters asked for.
     pub slopes: Option<TrajectorySensitivities>,
 }
 
 impl ParameterisedModel<'_> {
-    /// Goes through the beginning of a recording. `guess`: how far a model much like it began from its own start. `moves`: the
-    /// parameters whose slopes are wanted, and by how much one unit of each moves them. `None` where the model has no value
-    /// there.
+    /// Estimates the initial state and runs through the beginning of a recording.
+    ///
+    /// `guess`: `off` of a similar model, in sizes. `moves`: parameters whose sensitivities are wanted, and how far one
+    /// unit moves each. `None` if the model cannot be evaluated there.
     pub fn begin(
         &self,
         recording: &RecordingData,
@@ -75,17 +82,20 @@ impl ParameterisedModel<'_> {
         let own = local.state();
         local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         let shown: Vec<Option<usize>> = (0..own.len()).map(|i| self.shows(&local, i)).collect();
+        // states that the model fixes are only free in a recording that begins elsewhere than the model
         let elsewhere = self.begins_elsewhere(&local, recording, &shown);
         let shown_start = self.shown_start(&local, recording, &shown);
-        // what measures a state is seen where the recording begins: at rest a flow depends on every pressure
+        // Linearised where the recording begins: at the model's start a machine may be at rest, where a flow depends on
+        // every pressure.
         let there: Vec<f64> = (0..own.len()).map(|i| own[i] + shown_start[i] * self.sizes[i]).collect();
         if local.linearize(recording.times[0], &there, self.theta, &u).is_err() {
             local.linearize(recording.times[0], &own, self.theta, &u).ok()?;
         }
         let mut loose = self.looseness(&local, &own, &shown, elsewhere);
-        // what is shown may be as far from the model's start as it is shown
+        // a state that a signal shows may be as far off as that signal says
         loose.iter_mut().zip(shown_start.iter()).for_each(|(loose, off)| *loose = loose.max(off.abs()));
         let moved = moves.unwrap_or(&[]);
+        // with a guess the first run already has all sensitivities
         let mut first = guess.filter(|g| g.len() == own.len()).and_then(|g| {
             let x = DVector::from_column_slice(g);
             Some(InitialStateTrial {
@@ -96,7 +106,7 @@ impl ParameterisedModel<'_> {
         });
         let setting = InitialStateProblem { recording, own: &own, loose: &loose };
         if first.is_none() {
-            // a first reading may be false: the model's own start may be nearer
+            // a first sample may be wrong, so the model's own start is tried too
             let begin = |x: DVector<f64>| {
                 let beginning = self.through(recording, &mut local, &own, &x, &[])?;
                 Some(InitialStateTrial { beginning, x, slopes: false })
@@ -106,13 +116,15 @@ impl ParameterisedModel<'_> {
                 if b.beginning.data() < a.beginning.data() { b } else { a }
             };
             first = both.into_iter().flatten().reduce(nearer);
-            // first as near to the data as the model gets, from there with errors as they are left
+            // first with unit weight, as near to the data as the model gets; then with the errors that this leaves
             first = first.map(|tried| self.descended(&setting, &mut local, tried, 1.0));
         }
+        // from here on squared errors count by how large and correlated they are, up to a power of two
         let scale = first.as_ref()?.beginning.scale();
         let InitialStateTrial { beginning: mut best, x, slopes } = self.descended(&setting, &mut local, first?, scale);
         let off = x.as_slice().to_vec();
         let Some(moves) = moves else { return Some(InitialFit { local, off, state: best.state, slopes: None }) };
+        // the last run was without sensitivities to parameters
         if !slopes {
             best = self.through(recording, &mut local, &own, &x, moves)?;
         }
@@ -124,7 +136,7 @@ impl ParameterisedModel<'_> {
         })
     }
 
-    /// Gauss-Newton steps of the first state, where squared deviations count by `scale`.
+    /// Gauss-Newton steps of the initial state, with squared deviations divided by `scale`.
     fn descended(
         &self,
         setting: &InitialStateProblem<'_>,
@@ -135,6 +147,7 @@ impl ParameterisedModel<'_> {
         let InitialStateProblem { recording, own, loose } = *setting;
         for _ in 0..ROUNDS {
             let Some(mut step) = best.beginning.step(&best.x, loose, scale) else { break };
+            // no further run: the linear model is exact enough for a step this small
             if step.amax() < SMALL {
                 best.beginning.take_along(&step, self.sizes);
                 best.x += &step;
@@ -145,6 +158,7 @@ impl ParameterisedModel<'_> {
             for _ in 0..HALVINGS {
                 let to = &best.x + &step;
                 let tried = self.through(recording, local, own, &to, &[]);
+                // a step counts only if the cost does not grow
                 found = tried.filter(|t| t.cost(&to, loose, scale) <= costs);
                 if found.is_some() {
                     break;
@@ -157,15 +171,15 @@ impl ParameterisedModel<'_> {
         best
     }
 
-    /// Whether what is shown begins elsewhere than the model does.
+    /// Whether a signal that shows a state begins more than [`SURE`] deviations from the model's own start.
     fn begins_elsewhere(&self, local: &LocalEvaluator, recording: &RecordingData, shown: &[Option<usize>]) -> bool {
         let off = |y: usize, first: f64| (first - local.outputs[y]).abs() > SURE * self.deviations[y];
         shown.iter().flatten().any(|&y| recording.first_value(y).is_some_and(|first| off(y, first)))
     }
 
-    /// Deviations of the states from the model's own start, in their sizes. What the model fixes and no sensor shows by
-    /// itself begins where the model says, for a wrong law would find any other start for it; but not in a recording that
-    /// begins elsewhere with what is shown.
+    /// Standard deviations of the initial states from the model's own start, in sizes.
+    /// A state that the model fixes and no sensor shows begins where the model says: a wrong law would otherwise find
+    /// another start for it. The exception is a recording that begins elsewhere.
     fn looseness(&self, local: &LocalEvaluator, own: &[f64], shown: &[Option<usize>], elsewhere: bool) -> DVector<f64> {
         let c = &local.linear.c;
         let unmeasured = |i: usize| match own[i].abs() / self.sizes[i] {
@@ -174,6 +188,7 @@ impl ParameterisedModel<'_> {
         };
         DVector::from_fn(self.sizes.len(), |i, _| {
             let loose = unmeasured(i).max(TRAVEL * self.travel[i] / self.sizes[i]);
+            // a state counts as measured if its own deviation would surely change some signal
             let moves = |(c, deviation): (&f64, &f64)| (c * loose * self.sizes[i]).abs() > SURE * deviation;
             let measured = shown[i].is_some() || c.column(i).iter().zip(self.deviations).any(moves);
             match self.plan.state_unit(i) {
@@ -185,8 +200,8 @@ impl ParameterisedModel<'_> {
         })
     }
 
-    /// The signal that follows a state alone: nothing else, and no input, for that would be a balance of which the state is
-    /// a part that may be wrong.
+    /// The signal that depends on this state alone; `None` if there is none.
+    /// A signal that also depends on inputs or other states is a balance whose other terms may be wrong.
     fn shows(&self, local: &LocalEvaluator, state: usize) -> Option<usize> {
         let (c, d) = (&local.linear.c, &local.linear.d);
         let alone = |y: usize| (0..c.ncols()).all(|j| (c[(y, j)] != 0.0) == (j == state));
@@ -194,8 +209,8 @@ impl ParameterisedModel<'_> {
         (0..c.nrows()).find(|&y| alone(y) && no_input(y))
     }
 
-    /// How far states are from the model's own start by the first sample that shows them, in their sizes: far from what is
-    /// shown, a step of the whole start leads nowhere.
+    /// Distances of the states from the model's own start according to the first samples that show them, in sizes; 0
+    /// for others. Far from what is shown, a step of the whole initial state leads nowhere.
     fn shown_start(&self, local: &LocalEvaluator, recording: &RecordingData, shown: &[Option<usize>]) -> DVector<f64> {
         let off = |i: usize| {
             let y = shown[i]?;
@@ -205,7 +220,8 @@ impl ParameterisedModel<'_> {
         DVector::from_fn(self.sizes.len(), |i, _| off(i).unwrap_or(0.0))
     }
 
-    /// The beginning from `x` sizes off the model's own start.
+    /// Runs through the beginning from `x` sizes off the model's own start.
+    /// `None` if the model cannot be evaluated or the errors are not finite.
     fn through(
         &self,
         recording: &RecordingData,
@@ -216,6 +232,7 @@ impl ParameterisedModel<'_> {
     ) -> Option<InitialPassage> {
         let n = own.len();
         let state: Vec<f64> = (0..n).map(|i| own[i] + x[i] * self.sizes[i]).collect();
+        // choices are the initial states, then the parameters
         let width = n + moves.len();
         let mut slopes = DMatrix::zeros(n, width);
         slopes.view_mut((0, 0), (n, n)).fill_with_identity();
@@ -235,6 +252,7 @@ impl ParameterisedModel<'_> {
                 }
                 errors[i].push(error);
                 row.iter_mut().zip(slopes.column(i).iter()).for_each(|(to, s)| *to = s / deviation);
+                // the last column collects the products with the errors
                 row[width] = error;
                 exponential::add_outer(&mut gram, 1.0, &row[..n], &row);
             }
@@ -246,53 +264,60 @@ impl ParameterisedModel<'_> {
     }
 }
 
-/// A recording, the model's own start, and how far states may be from it, in their sizes.
+/// The recording, the model's own start (SI) and the standard deviations of the initial states in sizes.
 #[derive(Clone, Copy)]
 struct InitialStateProblem<'a> {
+    /// The recording.
     recording: &'a RecordingData,
+    /// The model's own start, SI.
     own: &'a [f64],
+    /// Standard deviation of each initial state from that start, in sizes.
     loose: &'a DVector<f64>,
 }
 
-/// A start that was tried, so many sizes off the model's own one; with the slopes that are wanted or without.
+/// A start that was tried.
 struct InitialStateTrial {
+    /// What the run from it gave.
     beginning: InitialPassage,
+    /// Its distance from the model's own start, in sizes.
     x: DVector<f64>,
+    /// The run had the sensitivities to the parameters.
     slopes: bool,
 }
 
-/// What one passage through the beginning gave.
+/// Result of one run through the beginning.
 struct InitialPassage {
-    /// State at its last sample.
+    /// State at its last sample, SI.
     state: Vec<f64>,
-    /// How that depends on the first state and on the parameters.
+    /// Sensitivities of that state: states by (initial states, parameters), in sizes.
     slopes: DMatrix<f64>,
-    /// Products of the first state's columns with all columns and with the errors.
+    /// Products of the initial states' columns with all columns and with the errors (last column).
     gram: DMatrix<f64>,
     /// Errors by signal, in deviations.
     errors: RecordingResiduals,
 }
 
 impl InitialPassage {
-    /// Squared errors.
+    /// Sum of squared errors.
     fn data(&self) -> f64 {
         self.errors.iter().flatten().map(|e| e * e).sum()
     }
 
-    /// What a squared deviation counts: errors are as large and as correlated as they are, where that is more than noise. What
-    /// nothing measures does not make up for a model that is wrong. To a power of two: it does not go along with parameters.
+    /// Divisor of squared deviations: mean square of the errors times their correlation time, at least 1.
+    /// A model that is wrong then does not move states that nothing measures. It is rounded to a power of two, so that
+    /// it does not change with the parameters.
     fn scale(&self) -> f64 {
         let count = self.errors.iter().map(Vec::len).sum::<usize>() as f64;
         let correlated = |e: &Vec<f64>| correlation::time(e) * e.iter().map(|e| e * e).sum::<f64>();
         (self.errors.iter().map(correlated).sum::<f64>() / count).max(1.0).log2().round().exp2()
     }
 
-    /// What it costs to begin so many sizes off the model's own start, where squared deviations count by `scale`.
+    /// Cost of a start `x` sizes off the model's own one.
     fn cost(&self, x: &DVector<f64>, loose: &DVector<f64>, scale: f64) -> f64 {
         self.data() / scale + x.component_div(loose).norm_squared()
     }
 
-    /// Products of the first state's columns and the pull to the model's own start.
+    /// Cholesky factor of the information matrix of the initial state; `None` if it is not positive definite.
     fn information(&self, loose: &DVector<f64>, scale: f64) -> Option<Cholesky<f64, nalgebra::Dyn>> {
         let n = loose.len();
         let mut information = self.gram.view((0, 0), (n, n)) / scale;
@@ -300,24 +325,27 @@ impl InitialPassage {
         information.cholesky()
     }
 
-    /// Moves the last state as a step of the first one does.
+    /// Moves the last state as `step` of the initial state moves it in the linear model.
     fn take_along(&mut self, step: &DVector<f64>, sizes: &[f64]) {
         let moved = self.slopes.columns(0, step.len()) * step;
         self.state.iter_mut().zip(moved.iter().zip(sizes)).for_each(|(s, (m, size))| *s += m * size);
     }
 
+    /// Gauss-Newton step of the initial state in sizes; `None` without an information matrix.
     fn step(&self, x: &DVector<f64>, loose: &DVector<f64>, scale: f64) -> Option<DVector<f64>> {
         let pull = DVector::from_fn(x.len(), |i, _| x[i] * loose[i].powi(-2));
         let last = self.gram.ncols() - 1;
         let step = self.information(loose, scale)?.solve(&(self.gram.column(last) / scale - pull));
-        // what nothing measures is led there by the linear model alone, which may end where the model has no sense
+        // Unmeasured states follow the linear model alone, which may lead where the model cannot be evaluated: the step
+        // is limited.
         let far =
             |(step, loose): (&f64, &f64)| if *loose < MEASURED { step.abs() / loose.max(UNMEASURED) } else { 0.0 };
         let farthest = step.iter().zip(loose.iter()).map(far).fold(1.0, f64::max);
         Some(step / farthest)
     }
 
-    /// How the state depends on the parameters, the first state found anew for each: by the implicit function theorem.
+    /// Sensitivities of the last state to the parameters, with the initial state estimated anew for each change of
+    /// them. They follow from the implicit function theorem.
     fn slopes_of_choices(
         &self,
         loose: &DVector<f64>,

@@ -1,5 +1,9 @@
-//! Which of the rivals of one step is taken: once it is sure that something is missing, all that is worth it contends, and
-//! held recordings confirm.
+//! The choice among the rivals of one step.
+//!
+//! Enters: the model before and the fitted rivals. Leaves: a [`SelectionStep`] with the accepted effect, or none, and a
+//! reason for every rival that was not taken. Once one rival is sure, something is missing; then all rivals that are
+//! worth a name and that held recordings confirm compete, and the simplest of those that cannot be told apart is taken.
+//! Method: `docs/gap_method.md`, "Which of several is taken".
 
 use super::super::clock::Deadline;
 use super::super::estimate::ModelFit;
@@ -11,61 +15,62 @@ use super::criteria::{CrossValidationScore, RejectionReason, RivalHypothesis, Se
 use super::weighed::{CrossValidatedFit, saved, widened};
 use rayon::prelude::*;
 
-/// A hypothesis that was weighed in a step.
+/// A hypothesis as it was judged in one step.
 #[derive(Clone, Debug)]
 pub struct HypothesisTrial {
-    /// The step: 1, 2, ...
+    /// Number of the step, from 1.
     pub step: usize,
-    /// What, with fitted values.
+    /// The hypothesis with its fitted values; no values where it was not fitted.
     pub chosen: HypothesisValues,
-    /// What left-out data say of it, where it was fitted.
+    /// Its score on left-out data; `None` where it was not fitted.
     pub found: Option<CrossValidationScore>,
-    /// Nothing for the one that was taken.
+    /// Why it was not taken; `None` for the one that was.
     pub reason: Option<RejectionReason>,
 }
 
-/// An effect that was taken.
+/// An accepted effect.
 #[derive(Clone, Debug)]
 pub struct AcceptedEffect {
     /// Index into [`DiagnosisProblem::hypotheses`].
     pub hypothesis: usize,
-    /// Evidence of left-out data and prior when it was taken, nats.
+    /// Evidence of left-out data and prior when it was accepted, nats.
     pub evidence: f64,
-    /// t statistic over the blocks.
+    /// t statistic over the blocks of left-out data.
     pub t: f64,
-    /// Part of the left-out gap that it closes.
+    /// Part of the left-out gap of the model before that it closes.
     pub closes: f64,
-    /// What cannot be told from it, with how far it is behind, nats.
+    /// Hypotheses that cannot be told from it, and how many nats each is behind it (negative: ahead).
     pub set: Vec<(HypothesisValues, f64)>,
 }
 
-/// What one step came to.
+/// Result of one step.
 pub struct SelectionStep {
-    /// Every rival with its reason, best first.
+    /// Every rival with its score and reason, best first.
     pub trials: Vec<HypothesisTrial>,
-    /// The model that is taken, with its effect.
+    /// The model with the accepted effect, and that effect.
     pub taken: Option<(CrossValidatedFit, AcceptedEffect)>,
-    /// What is worth it, where left-out data were sure of nothing.
+    /// Rivals that are worth a name, in a step in which left-out data were sure of none.
     pub undecided: Vec<RivalHypothesis>,
 }
 
-/// What rivals are judged by, and on which recordings.
+/// Criteria and recordings by which rivals are judged.
 pub struct EffectSelector<'a> {
     /// What is diagnosed.
     pub problem: &'a DiagnosisProblem<'a>,
-    /// Recordings that only confirm.
+    /// Held recordings, which only confirm.
     pub held: HoldoutRecordings<'a>,
-    /// The tests.
+    /// Criteria of acceptance.
     pub criteria: SelectionCriteria,
 }
 
 impl EffectSelector<'_> {
+    /// Whether a rival is a shape without a physical name.
     fn is_shape(&self, rival: &RivalHypothesis) -> bool {
         self.problem.hypotheses[rival.hypothesis].is_shape()
     }
 
-    /// Whether one of some rivals shows that something is missing: then all of them are compared with each other, not with
-    /// nothing. Beside shapes, what was weighed before among more hypotheses is not sure now.
+    /// Whether one of `some` shows that something is missing, by train data or together with held data.
+    /// Beside shapes only a shape can show it: the effects among them were judged in their own step and were not sure.
     fn is_sure(
         &self,
         some: &[(usize, Option<HoldoutConfirmation>)],
@@ -77,7 +82,7 @@ impl EffectSelector<'_> {
         fresh.any(|&(i, asked)| judged[i].accepted() || self.sure_with_held(&judged[i], asked))
     }
 
-    /// The rival that is taken, with what cannot be told from it.
+    /// Judges the rivals of a step and takes one of them, with the set of those that cannot be told from it.
     pub fn choose(
         &self,
         step: usize,
@@ -90,10 +95,10 @@ impl EffectSelector<'_> {
         let needed = needed(self.criteria.count);
         let mut reasons: Vec<Option<RejectionReason>> =
             judged.iter().map(|j| (!j.accepted()).then(|| j.refused(needed))).collect();
-        // they are asked about what may be taken only
+        // held recordings are simulated only if some rival may be taken
         let held =
             if judged.iter().any(CrossValidationScore::may) { self.held.left_by(&before.fit) } else { Vec::new() };
-        // what held recordings refute shows nothing, and has beaten nobody
+        // A rival that held recordings refute shows nothing, and cannot beat another one.
         let may: Vec<usize> = (0..rivals.len()).filter(|&i| judged[i].may()).collect();
         let ask = |&i: &usize| (i, self.held.ask(&held, &rivals[i].model.fit, &self.criteria.sensors));
         let asked: Vec<(usize, Option<HoldoutConfirmation>)> = may.par_iter().map(ask).collect();
@@ -102,23 +107,27 @@ impl EffectSelector<'_> {
         let (refuted, confirmed): (Vec<_>, Vec<_>) =
             asked.into_iter().map(|a| (a, refuted(&a))).partition(|(_, reason)| reason.is_some());
         let confirmed: Vec<(usize, Option<HoldoutConfirmation>)> = confirmed.into_iter().map(|(a, _)| a).collect();
+        // from here on rivals are compared with each other, not with the model before
         let any = self.is_sure(&confirmed, &rivals, &judged);
         for ((i, _), reason) in refuted {
+            // otherwise the reason of the train data stays: not sure
             if any || judged[i].accepted() {
                 reasons[i] = reason;
             }
         }
         let contenders: Vec<usize> = if any { confirmed.into_iter().map(|c| c.0).collect() } else { Vec::new() };
+        // contenders need not be sure one by one
         contenders.iter().for_each(|&i| reasons[i] = None);
         self.widen(&contenders, &mut rivals, until);
         let is_shape = |i: usize| self.is_shape(&rivals[i]);
         let mut order = self.criteria.order(&contenders, &rivals, &judged, &mut reasons);
-        // a shape has a coefficient for every bump: it counts where it surely leaves less than what has a name
+        // A shape has a coefficient for every bump, so it counts only if it surely leaves less than every named effect.
         if !order.iter().all(|&i| is_shape(i)) {
             order.retain(|&i| !is_shape(i));
         }
         let taken = order.first().copied();
         for &i in order.iter().filter(|i| Some(**i) != taken) {
+            // what stands and is not taken is indistinguishable
             reasons[i].get_or_insert(RejectionReason::Alike);
         }
         let trial = |(i, reason): (usize, Option<RejectionReason>)| {
@@ -127,10 +136,12 @@ impl EffectSelector<'_> {
         };
         let trials = reasons.into_iter().enumerate().map(trial).collect();
         let Some(first) = taken else {
+            // they may still be taken once a shape has shown that something is missing
             let worth = rivals.into_iter().zip(&judged).filter(|(_, j)| !any && j.may());
             return SelectionStep { trials, taken: None, undecided: worth.map(|(r, _)| r).collect() };
         };
         let (best, sensors) = (&rivals[first].model, &self.criteria.sensors);
+        // beyond a likelihood ratio of 1/ALPHA the data do tell two models apart
         let once = (1.0 / ALPHA).ln();
         let behind = |&i: &usize| {
             let other = &rivals[i].model;
@@ -148,8 +159,8 @@ impl EffectSelector<'_> {
         SelectionStep { trials, taken: Some((best.clone(), effect)), undecided: Vec::new() }
     }
 
-    /// Frees the width of what leaves as small a gap as the best with fewer coefficients, and is behind: a corner of a fixed
-    /// width is not at its optimum beside a law whose own freedom rounds it.
+    /// Frees the widths of rivals that leave as small a gap as the first contender with fewer coefficients, but are
+    /// behind it. A corner of a fixed width is at a disadvantage beside a law whose own freedom rounds the corner.
     fn widen(&self, contenders: &[usize], rivals: &mut [RivalHypothesis], until: Deadline<'_>) {
         let Some((&first, others)) = contenders.split_first() else { return };
         let own = |r: &RivalHypothesis| r.model.fit.candidate.own;
@@ -165,9 +176,10 @@ impl EffectSelector<'_> {
         }
     }
 
-    /// Best first.
+    /// Sorts rivals by their mean loss over blocks and signals, the least first.
     fn sort(&self, before: &CrossValidatedFit, rivals: &mut [RivalHypothesis]) {
         let sensors = &self.criteria.sensors;
+        // the level of a closed gap is set by the best model of each signal
         let least = |i: usize| {
             let all = rivals.iter().map(|r| &r.model).chain([before]).map(|w| w.left[0].mean(i));
             closed(sensors, i, all.fold(f64::INFINITY, f64::min))
@@ -177,7 +189,7 @@ impl EffectSelector<'_> {
         rivals.sort_by(|a, b| score(a).total_cmp(&score(b)));
     }
 
-    /// Why held recordings do not confirm a model; nothing where they do, or there are none.
+    /// Why held recordings do not confirm a model; `None` if they do, or if there are none (`asked` is `None`).
     fn refuted(
         &self,
         before: &CrossValidatedFit,
@@ -188,8 +200,9 @@ impl EffectSelector<'_> {
         asked.filter(|_| !confirmed).map(RejectionReason::NotConfirmed)
     }
 
-    /// Few recordings, few blocks: what is worth it is asked of the held recordings too. They are fresh, and a product of
-    /// e-values of independent data is one; the bound on it is one for all hypotheses together.
+    /// Whether train and held recordings together are sure of a rival that train data alone are not sure of.
+    /// Held recordings are independent of the train ones, and a product of e-values of independent data is an e-value.
+    /// The bound for all hypotheses together therefore holds for the sum of the evidences.
     fn sure_with_held(&self, judged: &CrossValidationScore, asked: Option<HoldoutConfirmation>) -> bool {
         let shown =
             |a: HoldoutConfirmation| a.evidence > 0.0 && judged.evidence + a.evidence > needed(self.criteria.count);
@@ -197,7 +210,7 @@ impl EffectSelector<'_> {
     }
 }
 
-/// The cause that a model has beyond the one before.
+/// The cause that a model has beyond the one before: its last one.
 fn last_cause(fit: &ModelFit) -> HypothesisValues {
     fit.causes().pop().unwrap_or(HypothesisValues { hypothesis: 0, values: Vec::new() })
 }

@@ -1,10 +1,12 @@
-//! Is one model better than another? Two tests on left-out data, numbers alone: block losses under random flips of
-//! sign, and the likelihood ratio as an e-value.
+//! Comparison of two models on left-out data, as pure functions of numbers.
+//!
+//! Two statistics: a t statistic of loss differences over blocks, and a log likelihood ratio that is an e-value.
+//! Also the noise-free gap of a signal and of all signals. Called by the other modules of `select`.
 
 use super::super::policy::{ALPHA, DELTA, LEAST};
 use super::folds::LeftOutErrors;
 
-/// What there is to know of the sensors.
+/// Noise and full scale of each sensor, SI.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensorAccuracy {
     /// Per signal the standard deviation of its noise.
@@ -13,8 +15,9 @@ pub struct SensorAccuracy {
     pub full_scale: Vec<f64>,
 }
 
-/// Loss differences of two models, block by block: how much better the second one is. Each block and signal has a
-/// variance of its own, so that one wild block cannot decide; blocks in which both are closed do not vote.
+/// Loss differences of two models, one per block; positive where `b` is better.
+/// Each block and signal has a variance of its own, so that one extreme block cannot decide.
+/// Blocks in which both models leave a closed gap contribute almost nothing.
 pub fn differences(a: &LeftOutErrors, b: &LeftOutErrors, sensors: &SensorAccuracy) -> Vec<f64> {
     let signals = sensors.noise.len();
     let blocks = a.squares.len();
@@ -26,6 +29,7 @@ pub fn differences(a: &LeftOutErrors, b: &LeftOutErrors, sensors: &SensorAccurac
             continue;
         }
         for (k, d) in all.iter_mut().enumerate() {
+            // a signal counts equally in all, however its samples are spread over the blocks
             let weight = a.samples[k][i] / samples * blocks as f64;
             *d += weight * (loss(a.squares[k][i], closed) - loss(b.squares[k][i], closed));
         }
@@ -33,21 +37,24 @@ pub fn differences(a: &LeftOutErrors, b: &LeftOutErrors, sensors: &SensorAccurac
     all
 }
 
-/// The mean square of a signal below which its gap is closed, where the best model leaves `best`.
+/// Mean square of a signal below which its gap counts as closed, if the best model leaves `best`.
 pub fn closed(sensors: &SensorAccuracy, signal: usize, best: f64) -> f64 {
     sensors.noise[signal].powi(2) + DELTA * DELTA * best + least(sensors, signal)
 }
 
-/// Loss of a block. Where a simulation does not get, the error is as large as numbers are.
+/// Loss of a block: a Gaussian log likelihood with a variance of its own, without its constant.
+/// The limit keeps it finite where a simulation did not get there.
 pub fn loss(square: f64, closed: f64) -> f64 {
     (square.min(f64::MAX.sqrt()) + closed).ln()
 }
 
+/// Mean square below which errors are rounding, SI squared.
 fn least(sensors: &SensorAccuracy, signal: usize) -> f64 {
     (LEAST * sensors.full_scale[signal]).powi(2)
 }
 
-/// Mean over its standard error, neighbours' correlation included; 0 for less than two.
+/// Mean over its standard error, with the correlation of neighbouring blocks; 0 for fewer than two values.
+/// `d`: one difference per block.
 pub fn t_statistic(d: &[f64]) -> f64 {
     let n = d.len() as f64;
     if d.len() < 2 {
@@ -56,13 +63,15 @@ pub fn t_statistic(d: &[f64]) -> f64 {
     let mean = d.iter().sum::<f64>() / n;
     let variance = d.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0);
     let neighbours = d.windows(2).map(|w| (w[0] - mean) * (w[1] - mean)).sum::<f64>() / n;
+    // a negative correlation would make the mean look more certain than it is
     let variance = (variance + 2.0 * neighbours.max(0.0)).max(f64::MIN_POSITIVE);
     mean / (variance / n).sqrt()
 }
 
-/// Log likelihood ratio of left-out data, nats: how much better the second model is, each signal with the variance that
-/// the model leaves. `independent`: per signal how many samples count. If the first model is true, it exceeds log(m/alpha)
-/// with probability below alpha/m (Markov; Vovk, Wang, Annals of Statistics 49, 2021).
+/// Log likelihood ratio of left-out data for `b` over `a`, nats; each signal has the variance that a model leaves.
+///
+/// `independent`: per signal the number of samples that count as independent. If `a` is true, the evidence exceeds
+/// `ln(m/alpha)` with a probability below `alpha/m` (Markov; Vovk, Wang, Annals of Statistics 49, 2021).
 pub fn evidence(a: &LeftOutErrors, b: &LeftOutErrors, independent: &[f64], sensors: &SensorAccuracy) -> f64 {
     let one = |i: usize| {
         let floor = least(sensors, i);
@@ -72,23 +81,24 @@ pub fn evidence(a: &LeftOutErrors, b: &LeftOutErrors, independent: &[f64], senso
     (0..sensors.noise.len()).map(one).sum()
 }
 
-/// What evidence must pass where the best of so many hypotheses is asked for, nats.
+/// Evidence that the best of `hypotheses` needs, nats: `ln(m/ALPHA)`. The factor m is the price of having chosen the
+/// best.
 pub fn needed(hypotheses: usize) -> f64 {
     (hypotheses.max(1) as f64 / ALPHA).ln()
 }
 
-/// Noise-free gap of a signal, in its unit.
+/// Noise-free gap of a signal, in its SI unit.
 pub fn signal_gap(left: &LeftOutErrors, signal: usize, sensors: &SensorAccuracy) -> f64 {
     (left.mean(signal) - sensors.noise[signal].powi(2)).max(0.0).sqrt()
 }
 
-/// Noise-free gap over all signals, in parts of full scale.
+/// Noise-free gap over all signals, in parts of full scale: root of the mean over signals of their squared parts.
 pub fn gap(left: &LeftOutErrors, sensors: &SensorAccuracy) -> f64 {
     let squares: Vec<f64> = (0..sensors.noise.len()).map(|i| left.mean(i)).collect();
     total_gap(&squares, sensors)
 }
 
-/// The same from the mean square of each signal.
+/// The same from the mean square of each signal, SI squared: `sqrt(mean_i max(m_i - noise_i^2, 0)/scale_i^2)`.
 pub fn total_gap(squares: &[f64], sensors: &SensorAccuracy) -> f64 {
     let parts = squares.iter().zip(&sensors.noise).zip(&sensors.full_scale);
     let sum: f64 = parts.map(|((s, noise), scale)| (s - noise * noise).max(0.0) / (scale * scale)).sum();

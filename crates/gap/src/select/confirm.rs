@@ -1,4 +1,8 @@
-//! Held recordings: they take no part in fitting and ranking, and are asked about one hypothesis at a time.
+//! Confirmation by held recordings, which take no part in fitting and ranking.
+//!
+//! They are evaluated with the parameters of the fits, nothing refitted. Enters: the fits without and with one
+//! hypothesis. Leaves: a [`HoldoutConfirmation`]. Criterion "confirmed" of `docs/gap_method.md`, "When an effect is
+//! accepted".
 
 use super::super::data::RecordingData;
 use super::super::estimate::candidate::RecordingResiduals;
@@ -8,29 +12,30 @@ use super::compare::{SensorAccuracy, gap, needed, signal_gap};
 use super::folds::LeftOutErrors;
 use super::matched::evidence;
 
-/// What held recordings say of a model against the one before, nothing refitted.
+/// Comparison of a model with the one before on held recordings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HoldoutConfirmation {
-    /// Evidence for it, nats.
+    /// Evidence for the model, nats.
     pub evidence: f64,
     /// Noise-free gap of the model before, in parts of full scale.
     pub before: f64,
-    /// That of the model.
+    /// Noise-free gap of the model.
     pub after: f64,
-    /// That of the nominal model.
+    /// Noise-free gap of the nominal model.
     pub nominal: f64,
-    /// The gap of some signal falls by half of what is worth a name.
+    /// The gap of some signal falls by half of what is worth a name on train data.
     pub closes: bool,
 }
 
 impl HoldoutConfirmation {
-    /// Whether they confirm it. `saved`: nats that it saves of the prior; `hypotheses`: among how many it was found.
+    /// Whether the held recordings confirm the model.
+    /// `saved`: nats of prior that it saves; `hypotheses`: number among which it was found.
     pub fn confirms(&self, saved: f64, hypotheses: usize) -> bool {
-        // a corrected model is better than the nominal one, or it is none
+        // a corrected model must not be worse than the nominal one
         if self.after > (1.0 + OPENS) * self.nominal {
             return false;
         }
-        // what brings parameters back to their data sheet must only not be contradicted
+        // an effect that returns parameters to their data sheet only must not be contradicted
         if saved > needed(hypotheses) && self.evidence > -1.0 {
             return true;
         }
@@ -38,25 +43,26 @@ impl HoldoutConfirmation {
     }
 }
 
-/// Held recordings.
+/// The held recordings, with the gap of the nominal model on them.
 pub struct HoldoutRecordings<'a> {
+    /// The recordings; may be empty.
     recordings: &'a [RecordingData],
     /// Noise-free gap of the nominal model on them, in parts of full scale.
     nominal: f64,
 }
 
 impl<'a> HoldoutRecordings<'a> {
-    /// Those on which the nominal model leaves so much.
+    /// Simulates the nominal model at the coordinates `x` on the held recordings.
     pub fn new(recordings: &'a [RecordingData], nominal: &CandidateModel, x: &[f64], sensors: &SensorAccuracy) -> Self {
         HoldoutRecordings { recordings, nominal: gap(&LeftOutErrors::of(all(nominal, x, recordings)), sensors) }
     }
 
-    /// What a model leaves of them.
+    /// Errors of a fit on the held recordings.
     pub fn left_by(&self, fit: &ModelFit) -> Vec<RecordingResiduals> {
         all(&fit.candidate, &fit.x, self.recordings)
     }
 
-    /// What they say of a model against the one before, which leaves so much; `None` where there are none.
+    /// Compares a fit with the model before, whose errors are `before`; `None` if there are no held recordings.
     pub fn ask(
         &self,
         before: &[RecordingResiduals],
@@ -71,6 +77,7 @@ impl<'a> HoldoutRecordings<'a> {
         let (a, b) = (LeftOutErrors::of(before.to_vec()), LeftOutErrors::of(after));
         let falls = |i: usize| {
             let before = signal_gap(&a, i, sensors);
+            // half of what train data ask for, since nothing was fitted to these recordings
             let worth = (0.5 * DELTA * before).max(0.5 * ACCURACY * sensors.full_scale[i]);
             before - signal_gap(&b, i, sensors) >= worth
         };
@@ -85,12 +92,14 @@ impl<'a> HoldoutRecordings<'a> {
     }
 }
 
+/// Errors of a model on all held recordings.
 fn all(candidate: &CandidateModel, x: &[f64], recordings: &[RecordingData]) -> Vec<RecordingResiduals> {
     recordings.iter().map(|r| of(candidate, x, r)).collect()
 }
 
-/// Errors on a recording that took no part; infinite where the simulation does not reach the end.
+/// Errors of a model on one held recording; infinite at every sample if the simulation stops early.
 fn of(candidate: &CandidateModel, x: &[f64], recording: &RecordingData) -> RecordingResiduals {
+    // a model with coefficients per recording has none for this one, so they are found here by cross-validation
     let found = if candidate.model.own.is_empty() {
         candidate.errors(x, recording, None)
     } else {

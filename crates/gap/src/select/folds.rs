@@ -1,5 +1,9 @@
-//! Left-out data: each piece of the train recordings, and each recording, is simulated with parameters that it had no
-//! part in. These are one Gauss-Newton step away from the fit to all data.
+//! Cross-validation of a fit: residuals of data that took no part in it.
+//!
+//! The parameters for each fold are a Gauss-Newton step away from the fit to all data, so that a fold costs a few
+//! simulations instead of a fit. The normal equations without the fold follow from the sums that the fit keeps by
+//! piece. Enters: a [`ModelFit`]. Leaves: [`LeftOutErrors`] per scheme, which every comparison of models uses. Method:
+//! `docs/gap_method.md`, "Left-out data".
 
 use super::super::data::RecordingData;
 use super::super::estimate::ModelFit;
@@ -7,22 +11,21 @@ use super::super::estimate::candidate::{RecordingResiduals, piece};
 use super::super::policy::{BLOCKS, DAMPINGS, PIECES, SETTLED, WHOLE_RECORDINGS};
 use std::ops::Range;
 
-/// Left-out errors, and their mean squares.
+/// Left-out errors of a model with their mean squares by block.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LeftOutErrors {
-    /// Per block and signal the mean square; infinite where the simulation did not get there.
+    /// Mean square per block and signal, SI squared; infinite where the simulation stopped before.
     pub squares: Vec<Vec<f64>>,
-    /// Per block and signal the number of samples.
+    /// Number of samples per block and signal.
     pub samples: Vec<Vec<f64>>,
-    /// The errors themselves, by recording.
+    /// The errors themselves, per recording, SI.
     pub errors: Vec<RecordingResiduals>,
-    /// Per fold how much the step that left it out was damped; nothing where the fit to all data stands. Empty where there are
-    /// no folds.
+    /// Per fold the damping of the step that left it out; `None` where the fit to all data stands. Empty without folds.
     pub dampings: Vec<Option<f64>>,
 }
 
 impl LeftOutErrors {
-    /// Mean square of a signal over all blocks.
+    /// Mean square of a signal over all blocks; 0 without samples.
     pub fn mean(&self, signal: usize) -> f64 {
         let (mut sum, mut count) = (0.0, 0.0);
         for (squares, samples) in self.squares.iter().zip(&self.samples) {
@@ -34,7 +37,7 @@ impl LeftOutErrors {
         if count > 0.0 { sum / count } else { 0.0 }
     }
 
-    /// Errors of recordings, cut into blocks of about equal length.
+    /// Mean squares of errors over blocks of about equal length. There are no folds.
     pub fn of(errors: Vec<RecordingResiduals>) -> Self {
         let lengths: Vec<usize> = errors.iter().map(|e| e.first().map_or(0, Vec::len)).collect();
         let mut left =
@@ -56,8 +59,10 @@ impl LeftOutErrors {
     }
 }
 
-/// Blocks of about equal length in each of some recordings, given by their samples.
+/// Ranges of samples of the blocks, per recording: about [`BLOCKS`] in all, at least two in a recording.
+/// `lengths`: samples of each recording.
 pub fn blocks(lengths: &[usize]) -> impl Iterator<Item = impl Iterator<Item = Range<usize>>> {
+    // blocks are equally long over all recordings, so that each counts alike
     let long = (lengths.iter().sum::<usize>() / BLOCKS).max(1);
     lengths.iter().map(move |&length| {
         let blocks = ((length as f64 / long as f64).round() as usize).max(2);
@@ -65,17 +70,18 @@ pub fn blocks(lengths: &[usize]) -> impl Iterator<Item = impl Iterator<Item = Ra
     })
 }
 
-/// A way of leaving out.
+/// A scheme of leaving data out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoldScheme {
-    /// Pieces, so that every operating point stays represented.
+    /// One piece of each recording at a time, so that every operating point stays represented.
     Pieces,
-    /// Whole recordings.
+    /// One complete recording at a time.
     Recordings,
 }
 
 impl FoldScheme {
-    /// The fold of a piece of a recording: pieces go through the recordings, so that no fold is of one time only.
+    /// The fold of a piece of a recording. Folds are shifted from recording to recording, so that none is of one time
+    /// only.
     pub fn fold(self, recording: usize, piece: usize) -> usize {
         match self {
             FoldScheme::Pieces => (piece + recording) % PIECES,
@@ -83,7 +89,7 @@ impl FoldScheme {
         }
     }
 
-    /// How many folds there are of so many recordings.
+    /// Number of folds for so many recordings.
     pub fn folds(self, recordings: usize) -> usize {
         match self {
             FoldScheme::Pieces => PIECES,
@@ -92,20 +98,21 @@ impl FoldScheme {
     }
 }
 
-/// The ways of leaving out of so many recordings: as a whole only where there are enough of them.
+/// Schemes for so many recordings: complete recordings only if there are at least [`WHOLE_RECORDINGS`].
 pub fn schemes(recordings: usize) -> Vec<FoldScheme> {
     let whole = (recordings >= WHOLE_RECORDINGS).then_some(FoldScheme::Recordings);
     [FoldScheme::Pieces].into_iter().chain(whole).collect()
 }
 
-/// What a fit leaves of left-out data, by every scheme.
+/// Left-out errors of a fit by every scheme.
 pub fn left_out(fit: &ModelFit, train: &[RecordingData]) -> Vec<LeftOutErrors> {
     schemes(train.len()).into_iter().map(|scheme| by_scheme(fit, train, scheme)).collect()
 }
 
+/// Left-out errors of a fit by one scheme.
 fn by_scheme(fit: &ModelFit, train: &[RecordingData], scheme: FoldScheme) -> LeftOutErrors {
     let folds = scheme.folds(train.len());
-    // a run without slopes takes other steps than one with them: only runs of one kind are compared
+    // A run without sensitivities takes other steps than one with them, so only runs of one kind are compared.
     let Some(complete) = fit.candidate.all_errors(&fit.x, train) else {
         return LeftOutErrors { dampings: vec![None; folds], ..LeftOutErrors::of(infinite(&fit.evaluated.errors)) };
     };
@@ -129,7 +136,7 @@ fn by_scheme(fit: &ModelFit, train: &[RecordingData], scheme: FoldScheme) -> Lef
     LeftOutErrors { dampings, ..LeftOutErrors::of(all) }
 }
 
-/// Where no simulation gets there.
+/// Errors of a model whose simulation stops early: infinite at every measured sample.
 fn infinite(errors: &[RecordingResiduals]) -> Vec<RecordingResiduals> {
     let one = |e: &f64| if e.is_nan() { f64::NAN } else { f64::INFINITY };
     let of_recording = |e: &RecordingResiduals| e.iter().map(|signal| signal.iter().map(one).collect()).collect();
@@ -138,11 +145,15 @@ fn infinite(errors: &[RecordingResiduals]) -> Vec<RecordingResiduals> {
 
 /// One fold that is left out of a fit.
 struct CrossValidationFold<'a> {
+    /// The fit to all data.
     fit: &'a ModelFit,
-    /// What the fit to all data leaves.
+    /// Errors of the fit to all data, per recording.
     complete: &'a [RecordingResiduals],
+    /// The train recordings.
     train: &'a [RecordingData],
+    /// How data are left out.
     scheme: FoldScheme,
+    /// Number of the fold.
     k: usize,
 }
 
@@ -152,15 +163,17 @@ impl CrossValidationFold<'_> {
         self.scheme.fold(number, piece(sample, samples)) == self.k
     }
 
-    /// Errors of all recordings with parameters that were fitted without the fold: where the kept data cost least, of the
-    /// Gauss-Newton steps from the fit to all data, more and more damped until the kept data cost as little as the linear
-    /// model promised. A step that leads onto a plateau costs little, but more than a shorter one; one that is cut off at bounds
-    /// may promise that they cost more. Beside them the damping; nothing where the fit to all data stands.
+    /// Errors of all recordings with parameters fitted without the fold, and the damping of the step to them.
+    ///
+    /// Gauss-Newton steps are tried with more and more damping, until the kept data cost as little as the linear model
+    /// promises. Of the steps tried, the one at which the kept data cost least counts. A step onto a plateau costs
+    /// little, but more than a shorter one; a step that bounds cut off may even promise a loss, and is damped too. The
+    /// damping is `None` where the fit to all data stands.
     fn found(&self) -> (Vec<RecordingResiduals>, Option<f64>) {
         let ModelFit { candidate, x: from, .. } = self.fit;
         let system = self.fit.system(|recording, piece| self.scheme.fold(recording, piece) != self.k);
         let before = self.kept(self.complete) + candidate.prior(from);
-        // the fit to all data has seen the fold: it stands only where every step costs more
+        // the fit to all data has used the fold, so it counts only if every step costs more than it
         let (mut least, mut found) = (before + SETTLED, (self.complete.to_vec(), None));
         for damping in DAMPINGS {
             let x = system.step(&candidate.coordinates, from, damping);
@@ -170,6 +183,7 @@ impl CrossValidationFold<'_> {
                 (least, found) = (cost, (errors, Some(damping)));
             }
             let promised = system.promised(from, &x);
+            // the damping ends where the step keeps the promise of the linear model
             if promised >= -SETTLED && cost <= before - promised + SETTLED {
                 break;
             }
@@ -177,7 +191,7 @@ impl CrossValidationFold<'_> {
         found
     }
 
-    /// Weighed squares of what is not left out.
+    /// Weighted squares of the data that are not left out.
     fn kept(&self, errors: &[RecordingResiduals]) -> f64 {
         let mut sum = 0.0;
         for (number, own) in errors.iter().enumerate() {

@@ -1,11 +1,15 @@
-//! Evidence of left-out data that something is missing, as a likelihood ratio whose number of independent samples belongs
-//! to the pair of models: what one leaves beyond the other is a trace, and the rest beside it is noise of some colour.
+//! Evidence of left-out data that something is missing, in nats.
 //!
-//! `E = L/T`, with `L = sum_j N_j/2 ln(a_j^2/c_j^2)` over the signals and T the variance of the product of trace and rest
-//! over that of white noise (Bartlett, J. Roy. Stat. Soc. B 8, 1946; for one signal `1 + 2 sum rho_x rho_d`), by spectra
-//! and by blocks, whichever is larger. To second order the expected value of exp(E) is then 1 where nothing is missing.
-//! Both models first get a step of all their parameters with the weights that the comparison itself has: what stays on its
-//! data sheet by the weight of coloured errors, not by truth, would count as an effect.
+//! It is a log likelihood ratio with an effective number of independent samples that belongs to the pair of models.
+//! `E = L/T`, with `L = sum_j N_j/2 ln(a_j^2/c_j^2)` over the signals j. `a_j^2` and `c_j^2` are the mean squares that
+//! the models without and with the effect leave. `T` is the variance of the product of trace and rest over that of
+//! white noise (Bartlett, J. Roy. Stat. Soc. B 8, 1946; for one signal `1 + 2 sum rho_x rho_d`). The trace is what one
+//! model leaves beyond the other. `T` is computed by spectra and by blocks, and the larger one counts.
+//! To second order the expected value of exp(E) is then 1 where nothing is missing.
+//!
+//! Both models first get a Gauss-Newton step of all parameters with the weights of this comparison. Otherwise a
+//! parameter that stays at its data sheet only because coloured errors have little weight would count as an effect.
+//! Called by `criteria` and `confirm`. Method: `docs/gap_method.md`, "Evidence".
 
 use super::super::data::RecordingData;
 use super::super::estimate::candidate::{RecordingResiduals, piece};
@@ -18,45 +22,51 @@ use nalgebra::DVector;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex64;
 
-/// Errors beyond so many full scales are no larger: there the simulation has left the machine.
+/// Errors are limited to this many full scales: beyond, the simulation has left the machine.
 const FAR: f64 = 1e3;
-/// Bins of a spectrum over which it is averaged on each side: so many and a part of the frequency.
+/// Half width of the average over a spectrum, in bins: this constant plus one bin in [`SMOOTHED_PART`] of the
+/// frequency.
 const SMOOTHED: usize = 2;
+/// Bins of frequency for each further bin of half width.
 const SMOOTHED_PART: usize = 10;
-/// Passes of the refit: the first weights still contain what parameters explain.
+/// Passes of the refit. The weights of the first pass still contain errors that parameters explain.
 const PASSES: usize = 2;
 
-/// Two models side by side, in parts of full scale.
+/// Left-out errors of two models, in parts of full scale, per recording.
 struct ModelPair<'a> {
+    /// Errors without the effect.
     without: &'a [RecordingResiduals],
+    /// Errors with the effect.
     with: &'a [RecordingResiduals],
+    /// Per signal the mean square below which errors are noise or rounding.
     floor: &'a [f64],
 }
 
-/// What a pair comes to.
+/// Result of comparing a pair.
 #[derive(Clone, Debug, PartialEq)]
 struct ModelComparison {
-    /// Log likelihood ratio were all samples independent.
+    /// Log likelihood ratio if all samples were independent, nats.
     likelihood: f64,
-    /// How many samples in a row say the same of the trace.
+    /// Factor `T` by which the samples are fewer than independent ones.
     time: f64,
-    /// Per signal the mean square that the second model leaves, the floor included.
+    /// Per signal the mean square that the second model leaves, floor included, in squared parts of full scale.
     square: Vec<f64>,
 }
 
 impl ModelComparison {
+    /// The evidence `E = L/T`.
     fn nats(&self) -> f64 {
         self.likelihood / self.time
     }
 
-    /// How much a squared error of each signal counts, in its unit.
+    /// Weights of the signals in this comparison, for errors in SI units.
     fn weights(&self, full_scale: &[f64]) -> SignalWeights {
         let square: Vec<f64> = self.square.iter().zip(full_scale).map(|(s, scale)| s * scale * scale).collect();
         SignalWeights { tau: vec![self.time.max(1.0); square.len()], square }
     }
 }
 
-/// Errors in parts of full scale.
+/// Errors in parts of full scale, limited to [`FAR`].
 fn scaled(errors: &[RecordingResiduals], sensors: &SensorAccuracy) -> Vec<RecordingResiduals> {
     let signal = |(e, scale): (&Vec<f64>, &f64)| {
         let one = |v: &f64| if v.is_nan() { f64::NAN } else { (v / scale).clamp(-FAR, FAR) };
@@ -65,19 +75,21 @@ fn scaled(errors: &[RecordingResiduals], sensors: &SensorAccuracy) -> Vec<Record
     errors.iter().map(|e| e.iter().zip(&sensors.full_scale).map(signal).collect()).collect()
 }
 
-/// Mean square below which nothing is seen, in parts of full scale: that of the noise, and rounding.
+/// Per signal the mean square below which nothing is seen, in squared parts of full scale: noise and rounding.
 fn floor(sensors: &SensorAccuracy) -> Vec<f64> {
     let one = |(noise, scale): (&f64, &f64)| (noise / scale).powi(2) + LEAST.powi(2);
     sensors.noise.iter().zip(&sensors.full_scale).map(one).collect()
 }
 
 impl ModelPair<'_> {
+    /// Mean square of a signal over all recordings, and the number of its samples. NaN counts as no sample.
     fn mean_square(errors: &[RecordingResiduals], signal: usize) -> (f64, f64) {
         let known = || errors.iter().flat_map(|e| &e[signal]).filter(|v| !v.is_nan());
         let count = known().count() as f64;
         (known().map(|v| v * v).sum::<f64>() / count.max(1.0), count)
     }
 
+    /// Likelihood, `T` and mean squares of the pair.
     fn compared(&self) -> ModelComparison {
         let mut likelihood = 0.0;
         let mut square = Vec::new();
@@ -87,18 +99,20 @@ impl ModelPair<'_> {
             likelihood += 0.5 * count * ((a + floor) / (c + floor)).ln();
             square.push(c + floor);
         }
+        // the rest contains at least white noise of the floor's size, which bounds T from below
         let least = self.floor.iter().zip(&square).map(|(f, s)| f / s).fold(1.0, f64::min);
         let time = self.time(&square).max(least);
         ModelComparison { likelihood, time, square }
     }
 
-    /// Trace and rest of each recording, per signal in deviations of the rest; nothing where a sample has no value.
+    /// Trace and rest of each recording, per signal, in standard deviations of the rest; 0 where a sample has no value.
     fn traces(&self, square: &[f64]) -> Vec<(RecordingResiduals, RecordingResiduals)> {
         let one = |(a, c): (&RecordingResiduals, &RecordingResiduals)| {
             let mut both = (Vec::new(), Vec::new());
             for ((a, c), s) in a.iter().zip(c).zip(square) {
                 let known = |v: f64| if v.is_finite() { v / s.sqrt() } else { 0.0 };
                 both.0.push(a.iter().zip(c).map(|(a, c)| known(a - c)).collect());
+                // adding zero times `a` makes the rest unknown where the trace is
                 both.1.push(a.iter().zip(c).map(|(a, c)| known(c + 0.0 * a)).collect());
             }
             both
@@ -106,6 +120,7 @@ impl ModelPair<'_> {
         self.without.iter().zip(self.with).map(one).collect()
     }
 
+    /// The factor `T`: variance of the product of trace and rest over that of white noise; 1 without a trace.
     fn time(&self, square: &[f64]) -> f64 {
         let (mut spectral, mut by_blocks, mut all) = (0.0, 0.0, 0.0);
         let mut planner = RealFftPlanner::new();
@@ -121,14 +136,17 @@ impl ModelPair<'_> {
             let of = |range: std::ops::Range<usize>| {
                 d.iter().zip(x).map(|(d, x)| range.clone().map(|k| d[k] * x[k]).sum::<f64>()).sum::<f64>()
             };
+            // the square of a sum over a block contains all correlations within the block and between signals
             by_blocks += blocks.map(of).map(|sum| sum * sum).sum::<f64>();
         }
+        // the larger estimate gives less evidence
         if all > 0.0 { f64::max(spectral, by_blocks) / all } else { 1.0 }
     }
 }
 
-/// `sum_k d_k' G(k - l) d_l` of one recording, G the covariance of x over lags and signals: by the spectra of both, that of x
-/// averaged over neighbouring frequencies.
+/// `sum_k d_k' G(k - l) d_l` of one recording, with G the covariance of `x` over lags and signals.
+/// It is computed from the spectra of both; that of `x` is averaged over neighbouring frequencies.
+/// `d`: the trace, `x`: the rest, both per signal and sample.
 fn in_spectrum(planner: &mut RealFftPlanner<f64>, d: &RecordingResiduals, x: &RecordingResiduals) -> f64 {
     let n = d.first().map_or(0, Vec::len);
     let transform = planner.plan_fft_forward(n);
@@ -142,14 +160,16 @@ fn in_spectrum(planner: &mut RealFftPlanner<f64>, d: &RecordingResiduals, x: &Re
     let mut sum = 0.0;
     for a in 0..traces.len() {
         for b in 0..=a {
+            // with cumulated sums the average over neighbours is one difference
             let mut cumulated = vec![Complex64::default(); bins + 1];
             (0..bins).for_each(|k| cumulated[k + 1] = cumulated[k] + rests[a][k] * rests[b][k].conj());
+            // cross spectra of two signals occur twice in the symmetric sum
             let twice = if a == b { 1.0 } else { 2.0 };
             for k in 0..bins {
                 let half = SMOOTHED + k / SMOOTHED_PART;
                 let (from, to) = (k.saturating_sub(half), (k + half + 1).min(bins));
                 let mean = (cumulated[to] - cumulated[from]) / (to - from) as f64;
-                // the halves of a spectrum are mirrored, but for its first value
+                // a real signal has a one-sided spectrum: all bins but the first stand for two frequencies
                 let both = if k == 0 { 1.0 } else { 2.0 };
                 sum += both * twice * (traces[a][k].conj() * mean * traces[b][k]).re;
             }
@@ -158,24 +178,26 @@ fn in_spectrum(planner: &mut RealFftPlanner<f64>, d: &RecordingResiduals, x: &Re
     sum / (n as f64).powi(2)
 }
 
-/// Evidence for the second of two models whose errors on data that took no part are these, nats.
+/// Evidence for the second of two models from their errors on data that took no part in fitting, nats.
+/// Outer index recording, then signal, then sample; SI units.
 pub fn evidence(without: &[RecordingResiduals], with: &[RecordingResiduals], sensors: &SensorAccuracy) -> f64 {
     let floor = floor(sensors);
     let (without, with) = (scaled(without, sensors), scaled(with, sensors));
     ModelPair { without: &without, with: &with, floor: &floor }.compared().nats()
 }
 
-/// A model with what is needed to move its parameters a little.
+/// A model with the sensitivities that are needed to move its parameters by a small step.
 pub struct AdjustableModel<'a> {
+    /// The model with its fit.
     model: &'a CrossValidatedFit,
-    /// Per recording the slopes of all errors that were left out: samples by signals by coordinates.
+    /// Per recording the sensitivities of the simulated signals: samples by signals by coordinates.
     slopes: Vec<Vec<f32>>,
-    /// Left-out errors by scheme.
+    /// Left-out errors in parts of full scale: by scheme, then by recording.
     left: Vec<Vec<RecordingResiduals>>,
 }
 
 impl<'a> AdjustableModel<'a> {
-    /// Runs the model once. `None` where it does not reach the end.
+    /// Computes the sensitivities by one run of each recording. `None` if a run stops early.
     pub fn new(model: &'a CrossValidatedFit, train: &[RecordingData], sensors: &SensorAccuracy) -> Option<Self> {
         let ModelFit { candidate, x, .. } = &model.fit;
         let slopes: Option<Vec<Vec<f32>>> = train.iter().enumerate().map(|(k, r)| candidate.slopes(x, r, k)).collect();
@@ -183,9 +205,11 @@ impl<'a> AdjustableModel<'a> {
         Some(AdjustableModel { model, slopes: slopes?, left })
     }
 
-    /// Where a step leads from the fit when each signal counts so much, and when it counts as in the fit: the difference, for
-    /// the data without a fold or, where there is none, for all. The step is damped as much as it must be to lead where the
-    /// linear model says; where none does, the fit stays.
+    /// The change of coordinates by weighting signals with `weights` instead of the weights of the fit.
+    ///
+    /// It is the difference of two Gauss-Newton steps on the data without the fold `without`, or on all data.
+    /// The steps are damped like the step that left the fold out. `damping` is `None` where the fit to all data stood
+    /// instead: then nothing changes.
     fn change(
         &self,
         scheme: FoldScheme,
@@ -204,7 +228,7 @@ impl<'a> AdjustableModel<'a> {
         DVector::from_fn(x.len(), |i, _| new[i] - old[i])
     }
 
-    /// Left-out errors with these weights, and the prior there, nats.
+    /// Left-out errors and prior (nats) after the step with these weights, to first order.
     fn moved(
         &self,
         scheme: FoldScheme,
@@ -215,6 +239,7 @@ impl<'a> AdjustableModel<'a> {
         let ModelFit { candidate, x, .. } = &self.model.fit;
         let dampings = &self.model.left[at].dampings;
         let fold = |(k, damping): (usize, &Option<f64>)| self.change(scheme, Some(k), *damping, weights);
+        // each sample moves with the parameters of the fold that left it out
         let changes: Vec<DVector<f64>> = dampings.iter().enumerate().map(fold).collect();
         let mut left = self.left[at].clone();
         for (number, (errors, slopes)) in left.iter_mut().zip(&self.slopes).enumerate() {
@@ -228,7 +253,7 @@ impl<'a> AdjustableModel<'a> {
                 }
             }
         }
-        // the step for all data is damped as the most damped fold is
+        // the step for all data is damped like the most damped fold; no step if a fold had none
         let most = dampings.iter().copied().reduce(|a, b| Some(a?.max(b?))).flatten();
         let all = self.change(scheme, None, most, weights);
         let x: Vec<f64> = x.iter().zip(all.iter()).map(|(x, c)| x + c).collect();
@@ -236,12 +261,13 @@ impl<'a> AdjustableModel<'a> {
     }
 }
 
-/// Evidence of left-out train data and of the prior for the second model, nats: the largest by any scheme.
+/// Evidence of left-out train data and of the prior for the second model, nats; of several schemes the largest.
 pub fn refitted(without: &AdjustableModel<'_>, with: &AdjustableModel<'_>, sensors: &SensorAccuracy) -> f64 {
     let floor = floor(sensors);
     let one = |(at, scheme): (usize, FoldScheme)| {
         let mut compared = ModelPair { without: &without.left[at], with: &with.left[at], floor: &floor }.compared();
         let mut saved = without.model.fit.prior() - with.model.fit.prior();
+        // weights follow from the comparison, and the comparison from errors moved with these weights
         for _ in 0..PASSES {
             let now = compared.weights(&sensors.full_scale);
             let (a, prior_a) = without.moved(scheme, at, &now, &sensors.full_scale);

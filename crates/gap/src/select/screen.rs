@@ -1,6 +1,11 @@
-//! All hypotheses beside a model, each at all its beginnings, with what the linear model there promises: the most promising
-//! are fitted first. What vanishes at its off value leaves the model as it is there: one run with the slopes of all of them
-//! serves them all. What has no linear model at its off value is looked at over the decades where it may be.
+//! Linear screening: all hypotheses beside a fitted model, ordered by what a Gauss-Newton step promises.
+//!
+//! Enters: the fitted model of the step and the indices of the open hypotheses. Leaves: starts for the fits of
+//! `rivals`.
+//!
+//! A hypothesis that vanishes at its off value does not change the trajectory there. One run with the sensitivities of
+//! many such hypotheses therefore serves all of them. A hypothesis without a linear model at its off value gets runs of
+//! its own, and its size is looked for over decades. Method: `docs/gap_method.md`, "Order of the hypotheses".
 
 use super::super::clock::Deadline;
 use super::super::effects::EffectCoefficient;
@@ -18,86 +23,92 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Hypotheses in one joint run at most: its costs grow with the states by hypotheses, that of a run of its own does not.
+/// Most hypotheses in one joint run. The cost of a run grows with states times hypotheses.
 const TOGETHER: usize = 64;
 
-/// A model to which hypotheses are added.
+/// The model to which hypotheses are added, with what is needed to add them.
 #[derive(Clone, Copy)]
 pub struct ScreeningContext<'a> {
     /// What is diagnosed.
     pub problem: &'a DiagnosisProblem<'a>,
-    /// The sensors.
+    /// Noise and full scales of the sensors.
     pub sensors: &'a SensorAccuracy,
-    /// The model.
+    /// The fitted model without the hypotheses.
     pub before: &'a ModelFit,
 }
 
-/// What a model leaves of the train recordings.
+/// Two measures of the residuals on the train recordings.
 #[derive(Clone, Debug)]
 pub struct TrainingResidual {
-    /// Weighed squares, prior included: by it signals count whose errors are small and white.
+    /// Weighted sum of squares with the prior. Signals with small and white errors dominate it.
     pub cost: f64,
-    /// Noise-free gap over all signals, in parts of full scale: by it those count whose errors are large.
+    /// Noise-free gap over all signals, in parts of full scale. Signals with large errors dominate it.
     pub gap: f64,
 }
 
-/// A place from which a model with one hypothesis more is fitted, and the linear model there.
+/// A point from which the model with one more hypothesis is fitted, and the linear model there.
 pub struct FitStart {
-    /// The model.
+    /// The model with the hypothesis.
     pub candidate: CandidateModel,
-    /// Where it begins.
+    /// Coordinates of the start, in the order of the candidate's coordinates.
     pub x: Vec<f64>,
+    /// Normal equations at the start, with the weights of the model before.
     system: NormalEquations,
+    /// Residual that the linear model predicts behind one undamped step.
     promised: TrainingResidual,
 }
 
 impl FitStart {
-    /// The weighed squares that the linear model promises, prior included.
+    /// Cost that the linear model predicts behind one step, prior included.
     pub fn promises(&self) -> f64 {
         self.promised.cost
     }
 }
 
-/// A hypothesis with its starts, the most promising first.
+/// Index of a hypothesis and its starts, the most promising first; at most [`STARTS`].
 pub type ScreenedHypothesis = (usize, Vec<FitStart>);
 
-/// What came of all hypotheses.
+/// Result of the screening.
 pub struct ScreeningResult {
-    /// In the order in which they are to be fitted.
+    /// Hypotheses in the order in which they should be fitted.
     pub order: Vec<ScreenedHypothesis>,
-    /// Those for which the time did not last.
+    /// Indices of hypotheses that were not screened for lack of time.
     pub passed: Vec<usize>,
-    /// Per hypothesis that vanishes where it begins: what it would gain at its usual size, nats.
+    /// For each hypothesis that vanishes at its off value: what it would gain at its usual size, nats.
     pub visible: Vec<f64>,
 }
 
-/// A hypothesis with the models with it, at each of its beginnings.
+/// Index of a hypothesis and the models with it, one for each of its starting values.
 type HypothesisModels = (usize, Vec<CandidateModel>);
-/// The same with the linear model there.
+/// Index of a hypothesis and its starts with their linear models.
 type HypothesisStarts = (usize, Vec<FitStart>);
 
-/// Hypotheses in the order in which they are to be fitted, those alone that are looked at until the time is over.
+/// Screens the hypotheses `open`. Those that need runs of their own are screened until the deadline, at least one
+/// round.
 pub fn screened(ground: &ScreeningContext<'_>, open: &[usize], until: Deadline<'_>) -> ScreeningResult {
     let (vanishing, mut others) = ground.attached_to(open);
+    // Parameters far off their data sheet may stand in for the hypothesis, so it is also started from the data sheet.
     let nominal = ground.nominal();
     let moved = nominal.as_ref().map(|fit| (fit, moved(fit, &vanishing)));
     let mut all = ground.together(vanishing);
+    // visibility is that beside the fitted model, before the starts at the data sheet are added
     let visible = all.iter().filter_map(|(i, models)| ground.visible(*i, models)).collect();
     if let Some((before, vanishing)) = moved {
-        // those that need a run each are begun once
+        // hypotheses that need runs of their own are started from the fitted model only
         let begun = ScreeningContext { before, ..*ground }.together(vanishing);
         all.iter_mut().zip(begun).for_each(|(known, more)| known.1.extend(more.1));
     }
-    // a scan takes many runs of stiff models: what needs none comes first
+    // a scan over decades takes many runs of stiff models, so hypotheses without one come first
     others.sort_by_key(|(i, models)| ground.is_scanned(*i, &models[0]));
     let (alone, passed) = until.rounds(others, |(i, models)| (i, ground.alone(i, models, until)));
     all.extend(alone);
+    // back in the order of the hypotheses, which decides ties of the ranking
     all.sort_by_key(|b| b.0);
     all.retain(|(_, models)| !models.is_empty());
     ScreeningResult { order: ordered(all), passed: passed.into_iter().map(|(i, _)| i).collect(), visible }
 }
 
-/// Models with hypotheses beside a model at other values of its parameters.
+/// The models with the tolerance parameters of another fit.
 fn moved(before: &ModelFit, all: &[HypothesisModels]) -> Vec<HypothesisModels> {
     let theta = before.candidate.theta(&before.x);
     let free = before.candidate.model.free.clone();
@@ -110,8 +121,7 @@ fn moved(before: &ModelFit, all: &[HypothesisModels]) -> Vec<HypothesisModels> {
     all.iter().map(|(i, models)| (*i, models.iter().map(one).collect())).collect()
 }
 
-/// The most promising first, by the weighed cost and by the gap in turn: by one of them signals count whose errors are
-/// small and white, by the other those whose errors are large.
+/// Hypotheses ordered by their least promised cost and their least promised gap in turn, each with its best starts.
 fn ordered(all: Vec<HypothesisStarts>) -> Vec<ScreenedHypothesis> {
     let least = |models: &[FitStart], by: fn(&TrainingResidual) -> f64| {
         models.iter().map(|m| by(&m.promised)).fold(f64::INFINITY, f64::min)
@@ -120,7 +130,7 @@ fn ordered(all: Vec<HypothesisStarts>) -> Vec<ScreenedHypothesis> {
     order.into_iter().map(|(i, models)| (i, starts(models))).collect()
 }
 
-/// Things in the order of two measures in turn, the least first.
+/// Orders items by two measures in turn, the least first: an item counts by the better of its two ranks.
 pub fn by_turns<T>(all: Vec<T>, one: impl Fn(&T) -> f64, other: impl Fn(&T) -> f64) -> Vec<T> {
     let ranks = |values: Vec<f64>| {
         let mut order: Vec<usize> = (0..values.len()).collect();
@@ -136,7 +146,7 @@ pub fn by_turns<T>(all: Vec<T>, one: impl Fn(&T) -> f64, other: impl Fn(&T) -> f
     order.into_iter().filter_map(|i| all[i].take()).collect()
 }
 
-/// The most promising of the beginnings of a hypothesis, by both in turn.
+/// The at most [`STARTS`] most promising starts, chosen by cost and by gap in turn.
 fn starts(mut models: Vec<FitStart>) -> Vec<FitStart> {
     let mut found: Vec<FitStart> = Vec::new();
     let by: [fn(&TrainingResidual) -> f64; 2] = [|l| l.cost, |l| l.gap];
@@ -149,7 +159,8 @@ fn starts(mut models: Vec<FitStart>) -> Vec<FitStart> {
     found
 }
 
-/// Whether the model with a hypothesis is at its first values the model without it.
+/// Whether the model with a hypothesis at its first values equals the model without it.
+/// That needs the off value of each coefficient within its bounds and no additional states.
 fn vanishes(h: &Hypothesis, model: &CandidateModel, before: &ModelFit) -> bool {
     let off = |c: &EffectCoefficient| {
         c.whole().is_none() && c.min.is_none_or(|m| m <= c.off) && c.max.is_none_or(|m| m >= c.off)
@@ -159,15 +170,17 @@ fn vanishes(h: &Hypothesis, model: &CandidateModel, before: &ModelFit) -> bool {
 }
 
 impl ScreeningContext<'_> {
+    /// The hypothesis of this index.
     fn h(&self, hypothesis: usize) -> &Hypothesis {
         &self.problem.hypotheses[hypothesis]
     }
 
+    /// Whether the hypothesis frees a parameter from its tolerance.
     fn is_parameter(&self, hypothesis: usize) -> bool {
         self.h(hypothesis).family == "parameter"
     }
 
-    /// What sums of squares of each signal come to; `prior` in squared deviations.
+    /// Cost and gap of given sums of squares, one per signal; `prior` in squared deviations.
     fn left(&self, sums: Vec<f64>, prior: f64) -> TrainingResidual {
         let weights = &self.before.weights;
         let cost = sums.iter().enumerate().map(|(i, s)| weights.weight(i) * s).sum::<f64>() + prior;
@@ -176,8 +189,9 @@ impl ScreeningContext<'_> {
         TrainingResidual { cost, gap: total_gap(&squares, self.sensors) }
     }
 
-    /// A model at nominal values of its tolerances, where it is bent away from them: what is large bends parameters, and from
-    /// there no linear step leads to it.
+    /// The fitted model moved to the nominal values of its tolerance parameters.
+    /// `None` if they are close to it already, or the model cannot be simulated there.
+    /// A large missing effect bends parameters, and no linear step leads from the bent parameters to the effect.
     fn nominal(&self) -> Option<ModelFit> {
         if self.before.prior() <= OTHER_WEIGHTING {
             return None;
@@ -188,7 +202,8 @@ impl ScreeningContext<'_> {
         Some(fit)
     }
 
-    /// A model where it stands; `None` where the linear model has no sense.
+    /// A start with its linear model. `errors` are the residuals and `sums` the sensitivity products, one per signal.
+    /// `None` if the linear model predicts a cost that is not finite.
     fn begin(
         &self,
         candidate: CandidateModel,
@@ -199,6 +214,7 @@ impl ScreeningContext<'_> {
         let mut sum = SensitivityProducts::none(x.len());
         sums.iter().enumerate().for_each(|(i, s)| sum.add_weighed(s, self.before.weights.weight(i)));
         let system = NormalEquations::of(sum, &candidate.coordinates, &x);
+        // undamped: this only ranks, the fit damps its steps
         let to = system.step(&candidate.coordinates, &x, 0.0);
         let change = DVector::from_fn(x.len(), |i, _| to[i] - x[i]);
         let falls = |(i, s): (usize, &SensitivityProducts)| squares(errors, i) - s.gain(&change);
@@ -206,7 +222,8 @@ impl ScreeningContext<'_> {
         promised.cost.is_finite().then_some(FitStart { candidate, x, system, promised })
     }
 
-    /// What a hypothesis that vanishes where it begins would gain at its usual size, nats.
+    /// Nats that a hypothesis would gain at its usual size; `None` if it does not vanish at its off value.
+    /// Of several starts the one that gains most counts.
     fn visible(&self, hypothesis: usize, models: &[FitStart]) -> Option<f64> {
         let h = self.h(hypothesis);
         let gain = |m: &FitStart| m.system.visible(self.before.x.len(), h.coefficients.len());
@@ -214,25 +231,27 @@ impl ScreeningContext<'_> {
         vanishing.then(|| models.iter().map(gain).fold(0.0, f64::max))
     }
 
-    /// Hypotheses that vanish where they begin, and others.
+    /// Models of all open hypotheses: first those that vanish at their off value, then the others.
     fn attached_to(&self, open: &[usize]) -> (Vec<HypothesisModels>, Vec<HypothesisModels>) {
         let attached = |&i: &usize| Some((i, self.attached(i)?));
         let all: Vec<HypothesisModels> = open.par_iter().filter_map(attached).collect();
         all.into_iter().partition(|(i, models)| vanishes(self.h(*i), &models[0], self.before))
     }
 
-    /// The model with a hypothesis, at each of its beginnings.
+    /// The model with a hypothesis at each of its starting values; `None` if it does not compile.
     fn attached(&self, hypothesis: usize) -> Option<Vec<CandidateModel>> {
         let h = self.h(hypothesis);
         let tolerances = self.before.tolerances();
         let mut values = beginnings(h);
         let is_parameter = self.is_parameter(hypothesis);
+        // a parameter starts where the fit before left it
         if is_parameter {
             let place = self.problem.tolerances.iter().position(|t| t.name == h.attachments[0].place.place);
             values = place.map(|p| vec![tolerances[p]]).into_iter().collect();
         }
         let mut causes = self.before.causes();
         causes.push(HypothesisValues { hypothesis, values: values.first()?.clone() });
+        // one compilation serves all starting values, which differ in parameter values only
         let mut first = candidate(self.problem, &causes, Some(&tolerances), self.before.candidate.taken)?;
         first.begins_as(&self.before.candidate);
         let with = |values: &Vec<f64>| {
@@ -248,13 +267,14 @@ impl ScreeningContext<'_> {
         Some(values.iter().map(with).collect())
     }
 
-    /// Hypotheses that vanish where they begin.
+    /// Starts of hypotheses that vanish at their off value, by joint runs.
     fn together(&self, all: Vec<HypothesisModels>) -> Vec<HypothesisStarts> {
         let entries: Vec<HypothesisValues> = all
             .iter()
             .filter(|(i, _)| !self.is_parameter(*i))
             .flat_map(|(_, models)| models.iter().filter_map(|m| m.causes.last().cloned()))
             .collect();
+        // at least as many groups as threads, so that all of them are busy
         let rounds = entries.len().div_ceil(TOGETHER).max(rayon::current_num_threads());
         let long = entries.len().div_ceil(rounds).max(1);
         let sums: Vec<Option<_>> = entries.par_chunks(long).flat_map_iter(|some| self.jointly(some)).collect();
@@ -262,9 +282,11 @@ impl ScreeningContext<'_> {
         let ModelFit { x, evaluated, .. } = self.before;
         let mut begun = |i: usize, model: CandidateModel| {
             let present = model.present();
+            // the sensitivity to a tolerance parameter is known from the fit before; only its prior is gone
             if self.is_parameter(i) {
                 return self.begin(model, present, &evaluated.errors, &evaluated.by_signal(x.len()));
             }
+            // a hypothesis that cannot be attached even alone in a joint run gets a run of its own
             let Some(sums) = sums.next()? else { return self.on_its_own(model) };
             let sums: Vec<SensitivityProducts> =
                 sums.into_iter().map(|s: SensitivityProducts| s.with_idle(present.len())).collect();
@@ -273,7 +295,8 @@ impl ScreeningContext<'_> {
         all.into_iter().map(|(i, models)| (i, models.into_iter().filter_map(|m| begun(i, m)).collect())).collect()
     }
 
-    /// Sums of hypotheses that share one model, signal by signal; where they cannot, halves do, and one that cannot has none.
+    /// Sensitivity products per signal for each of `some`. If the joint model fails, its halves are tried.
+    /// `None` for a hypothesis that fails alone.
     fn jointly(&self, some: &[HypothesisValues]) -> Vec<Option<Vec<SensitivityProducts>>> {
         if let Some(all) = self.joint(some) {
             return all.into_iter().map(Some).collect();
@@ -287,6 +310,8 @@ impl ScreeningContext<'_> {
         all
     }
 
+    /// Sensitivity products of hypotheses attached to one model: outer index hypothesis, inner index signal.
+    /// `None` if the model does not compile, a coefficient is not free, or the simulation stops early.
     fn joint(&self, some: &[HypothesisValues]) -> Option<Vec<Vec<SensitivityProducts>>> {
         let mut causes = self.before.causes();
         let shapes = causes.len();
@@ -294,6 +319,7 @@ impl ScreeningContext<'_> {
         let taken = self.before.candidate.taken;
         let mut model = models::attached(self.problem, &causes, Some(&self.before.tolerances()), taken, shapes).ok()?;
         model.begins_as(&self.before.candidate);
+        // coordinates of the hypotheses follow those of the model before, one group per hypothesis
         let mut first = self.before.x.len();
         let group = |c: &HypothesisValues| {
             let from = first;
@@ -301,13 +327,14 @@ impl ScreeningContext<'_> {
             from..first
         };
         let groups: Vec<Range<usize>> = some.iter().map(group).collect();
+        // a coefficient that is not free would shift the groups
         if first != model.coordinates.len() {
             return None;
         }
         model.groups(&model.present(), &self.problem.train, &groups)
     }
 
-    /// A hypothesis that does not vanish where it begins.
+    /// Starts of a hypothesis that does not vanish at its off value, each by a run of its own.
     fn alone(&self, hypothesis: usize, models: Vec<CandidateModel>, until: Deadline<'_>) -> Vec<FitStart> {
         let of_size = |m: CandidateModel| {
             if self.is_scanned(hypothesis, &m) { self.scanned(&m, &m.model.theta, until) } else { vec![m] }
@@ -315,13 +342,15 @@ impl ScreeningContext<'_> {
         models.into_iter().flat_map(of_size).filter_map(|m| self.on_its_own(m)).collect()
     }
 
-    /// Whether the size of a hypothesis that does not vanish where it begins is looked for.
+    /// Whether the size of a hypothesis must be looked for over decades: it changes the order of the model, and has a
+    /// coefficient of unbounded size.
     fn is_scanned(&self, hypothesis: usize, model: &CandidateModel) -> bool {
         self.h(hypothesis).changes_order && !self.sized(model).is_empty()
     }
 
-    /// Starts at the sizes of a hypothesis that vanishes where it begins, looked for where the linear model leads: beyond the
-    /// first gain a step may end where the model does not come back from. None for others.
+    /// Starts at the sizes found over decades for a hypothesis that vanishes at its off value.
+    /// The scan goes on from where the linear model leads, because a step beyond the first gain may end where the model
+    /// cannot come back from. Empty for other hypotheses, and where the linear model does not move the size.
     pub fn of_size(&self, hypothesis: usize, begun: &FitStart, until: Deadline<'_>) -> Vec<FitStart> {
         if !vanishes(self.h(hypothesis), &begun.candidate, self.before) {
             return Vec::new();
@@ -337,7 +366,7 @@ impl ScreeningContext<'_> {
         self.scanned(model, &theta, until).into_iter().filter_map(|m| self.on_its_own(m)).collect()
     }
 
-    /// The coordinates of a model's last cause that may be of any size above nothing.
+    /// Indices of the coordinates of the last cause that may have any value above zero.
     fn sized(&self, model: &CandidateModel) -> Vec<usize> {
         let free = |i: &usize| {
             let c = &model.coordinates[*i];
@@ -346,8 +375,11 @@ impl ScreeningContext<'_> {
         (self.before.x.len()..model.coordinates.len()).filter(free).collect()
     }
 
-    /// A model with its last cause of the sizes at which it comes nearest to the recordings as it stands: decades up from
-    /// `usual` until nothing changes any more, and down until the effect is gone. Once the time is over, of those looked at.
+    /// The model with its last cause at the sizes where its cost is least, without refitting anything else.
+    ///
+    /// Sizes go up from `usual` by decades until the cost does not change any more, and down until it equals the cost
+    /// without the effect. The two half decades beside the best one are tried last. At most [`SIZES`] models, the best
+    /// first. Behind the deadline no further size is evaluated.
     fn scanned(&self, model: &CandidateModel, usual: &[f64], until: Deadline<'_>) -> Vec<CandidateModel> {
         let places: Vec<usize> = self.sized(model).iter().map(|&i| model.coordinates[i].parameter).collect();
         let at = |half_decades: i32| {
@@ -361,6 +393,7 @@ impl ScreeningContext<'_> {
                 return f64::INFINITY;
             }
             let mut model = at(half_decades);
+            // a size at which the model chatters takes very many steps and is given up
             model.allowed = self.before.evaluated.steps.iter().map(|steps| SLOWER * steps).collect();
             let found = model.cost_within(&model.present(), &self.problem.train, &self.before.weights, SCANNED * off);
             found.unwrap_or(f64::INFINITY)
@@ -376,6 +409,7 @@ impl ScreeningContext<'_> {
                 let next = if up { 2 * k } else { -2 * k };
                 let now = cost(next);
                 known.insert(next, now);
+                // upwards the effect is as strong as it gets when the cost stays the same
                 if up && same(now, last) && !same(now, off) {
                     break;
                 }
@@ -387,20 +421,22 @@ impl ScreeningContext<'_> {
         [best - 1, best + 1].into_iter().for_each(|k| {
             known.insert(k, cost(k));
         });
+        // sizes that leave the cost as without the effect are no starts
         let mut order: Vec<(i32, f64)> = known.into_iter().filter(|k| k.1.is_finite() && !same(k.1, off)).collect();
         order.sort_by(|a, b| a.1.total_cmp(&b.1));
         order.into_iter().take(SIZES).map(|(k, _)| at(k)).collect()
     }
 
-    /// A model by a run of its own.
+    /// Start of a model at its present values, by a run of its own; `None` if the simulation stops early.
     fn on_its_own(&self, candidate: CandidateModel) -> Option<FitStart> {
         let x = candidate.present();
         self.at(candidate, x)
     }
 
-    /// A model at a point.
+    /// Start of a model at the coordinates `x`; `None` if the simulation stops early.
     fn at(&self, mut candidate: CandidateModel, x: Vec<f64>) -> Option<FitStart> {
         let evaluated = candidate.evaluate(&x, &self.problem.train)?;
+        // the initial states found here are the first guess of the fit
         candidate.off.clone_from(&evaluated.off);
         let sums = evaluated.by_signal(x.len());
         self.begin(candidate, x, &evaluated.errors, &sums)

@@ -1,5 +1,10 @@
-//! The search: one effect after another, until no hypothesis is sure, worth it and confirmed; then whether a shape that has
-//! no name says more.
+//! The search for missing effects, one after another.
+//!
+//! Enters: a problem with its train recordings, the held recordings and a budget. Leaves: an [`EffectSearchResult`].
+//! Each step screens all open hypotheses, fits the promising ones and accepts the best one that left-out data are sure
+//! of, that is worth a name and that held recordings confirm. The search ends when a step accepts nothing, or after
+//! [`EFFECTS`] effects; then shapes without a physical name are tried on what is left.
+//! Method: `docs/gap_method.md`, "Which of several is taken" and "When nothing is sure".
 
 use super::super::clock::{Budget, Deadline};
 use super::super::data::RecordingData;
@@ -22,22 +27,23 @@ use std::ops::ControlFlow;
 
 mod partners;
 
-/// A stage of the diagnosis, for progress bars.
+/// A stage of the diagnosis, reported for progress bars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stage {
-    /// The model within its tolerances.
+    /// Fit of the nominal model with its parameters free within their tolerances.
     Tolerances,
-    /// All hypotheses, looking for the n-th effect.
+    /// Linear screening of all hypotheses, in the search for the n-th effect.
     Screen(usize),
-    /// The best of them, fitted.
+    /// Fits of the most promising hypotheses, in the search for the n-th effect.
     Fit(usize),
-    /// Shapes without a name.
+    /// Shapes without a physical name, tried on the remaining gap.
     Shapes,
-    /// Figures of the verdict.
+    /// Computation of the verdict's figures.
     Figures,
 }
 
 impl fmt::Display for Stage {
+    /// Text of the stage for progress bars.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Stage::Tolerances => f.write_str("parameters within their tolerances"),
@@ -49,69 +55,75 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Why there is no verdict.
+/// Why a search ended without a result.
 #[derive(Clone, Debug)]
 pub enum DiagnosisError {
-    /// The nominal model could not be compiled with its parameters free.
+    /// The nominal model with free parameters does not compile.
     Model(Vec<Diagnostic>),
-    /// It does not reach the end of a recording: the file, and when it stops, s.
+    /// The simulation of the nominal model stops before the end of a recording: the file, and the time in s.
     Stops(String, f64),
-    /// Whoever watches did not want to go on.
+    /// The progress callback asked to end the search.
     Stopped,
 }
 
-/// Hears of each stage as it begins, and may end the search there.
+/// Callback at the beginning of each stage. `Break` ends the search before that stage.
 pub type DiagnosisProgress<'a> = &'a mut dyn FnMut(Stage) -> ControlFlow<()>;
 
-/// Passes stages on; once it was asked to stop, no stage begins.
+/// Passes stages on to the progress callback and remembers a request to stop.
 struct StageWatch<'a> {
+    /// The caller's callback.
     progress: DiagnosisProgress<'a>,
+    /// The callback asked to stop; no further stage begins.
     stopped: bool,
 }
 
 impl StageWatch<'_> {
+    /// Reports a stage. `None` means that the search must end.
     fn begin(&mut self, stage: Stage) -> Option<()> {
         self.stopped = self.stopped || (self.progress)(stage).is_break();
         (!self.stopped).then_some(())
     }
 }
 
-/// What a search came to.
+/// Result of a search.
 pub struct EffectSearchResult {
-    /// The model within its tolerances.
+    /// The nominal model with its parameters fitted within their tolerances.
     pub base: CrossValidatedFit,
-    /// With everything that was taken.
+    /// The model with all accepted effects; equal to `base` where none was accepted.
     pub last: CrossValidatedFit,
-    /// What was taken, in the order of the last model's causes.
+    /// Accepted effects, in the order of the causes of `last`.
     pub taken: Vec<AcceptedEffect>,
-    /// A shape that says more of what is left than any effect.
+    /// A shape without a physical name that was accepted because no effect explains the remaining gap as well.
     pub shape: Option<AcceptedEffect>,
-    /// Share of the hypotheses that these recordings would show at their usual size.
+    /// Share of the hypotheses that the recordings would show at their usual size, 0 to 1.
     pub visible: f64,
-    /// What the judge says of an effect that was asked for.
+    /// Only where one effect was asked for: whether it would be accepted, in words.
     pub asked: Option<String>,
-    /// Everything that was weighed, best of each step first.
+    /// Every hypothesis of every step with its score and the reason why it was not taken; best first within a step.
     pub trials: Vec<HypothesisTrial>,
 }
 
-/// A search on its way.
+/// State of a search.
 struct EffectSearch<'a> {
+    /// What is diagnosed.
     problem: &'a DiagnosisProblem<'a>,
+    /// Criteria of acceptance, with the held recordings.
     chooser: EffectSelector<'a>,
-    /// Share of the hypotheses of the first step that would be seen.
+    /// Share of the hypotheses of the first step that the recordings would show; `None` before the first step.
     visible: Option<f64>,
+    /// Hypotheses judged so far.
     trials: Vec<HypothesisTrial>,
-    /// What the screen left aside in this step.
+    /// Hypotheses of the current step that were not fitted for lack of time.
     passed: Vec<HypothesisTrial>,
-    /// What is worth it in the last step, where left-out data were sure of nothing.
+    /// Hypotheses of the last step that are worth a name although left-out data were not sure of any.
     undecided: Vec<RivalHypothesis>,
-    /// Shapes were worth a fit beside the last model.
+    /// At least one shape was fitted beside the last model.
     shape_says_more: bool,
-    /// When the time is over.
+    /// Deadline of the complete search.
     ends: Deadline<'a>,
 }
 
-/// Searches, for so long; held recordings only confirm.
+/// Searches for the missing effects within a budget. Held recordings only confirm.
 ///
 /// # Errors
 /// [`DiagnosisError`].
@@ -125,33 +137,40 @@ pub fn search<'a>(
     let (mut search, mut base) = begun(problem, held, budget, &mut watch)?;
     let (mut last, mut taken) = (base.clone(), Vec::new());
     let mut shape = None;
+    // one step more than there may be effects: the last one tries shapes only
     for step in 1..=EFFECTS + 1 {
         let found = if step <= EFFECTS { search.step(step, &mut last, &mut watch) } else { None };
         let found = found.or_else(|| {
             watch.begin(Stage::Shapes)?;
             search.shape(step, &mut last)
         });
+        // `choose` may have moved the model without effects to a better optimum
         if taken.is_empty() {
             base.clone_from(&last);
         }
         let Some((chosen, effect)) = found else { break };
+        // a shape has no name, so that no effect is searched beside it
         if search.h(effect.hypothesis).is_shape() {
             shape = Some(effect);
             break;
         }
+        // until an effect is accepted its widths are fixed
         last = search.freed(chosen);
         taken.push(effect);
         search.drop_needless(&mut last, &mut taken);
+        // the first effect was chosen among equals before the second one was known
         let reconsiders = step == 2 && taken.len() == 2;
         if reconsiders {
             let stands = search.reconsidered(&base, EffectExplanation { model: last, taken });
             (last, taken) = (stands.model, stands.taken);
         }
-        // what stands alone has been asked for a second effect
+        // What stands alone has already been searched for a second effect.
+        // A wrong sign or unit falsifies everything that could be fitted beside it.
         if search.is_recording_error(&taken) || reconsiders && taken.len() < 2 {
             break;
         }
     }
+    // a single effect may be only the best approximation in the library: a shape in its place may explain more
     if let [only] = taken.as_slice()
         && !search.h(only.hypothesis).is_recording_error()
         && let Some(instead) = search.shape_instead(&base, &last, &mut watch)
@@ -166,8 +185,8 @@ pub fn search<'a>(
     Ok(EffectSearchResult { base, last, taken, shape, visible, asked: None, trials: search.trials })
 }
 
-/// One hypothesis beside the model within its tolerances, taken whether it may be or not, with the reason why not; `None`
-/// where the model has no values with it.
+/// Fits one hypothesis beside the model within its tolerances, and accepts it even if the criteria reject it.
+/// The verdict of the criteria is in `asked`. `None` if the model with the hypothesis cannot be simulated.
 ///
 /// # Errors
 /// [`DiagnosisError`].
@@ -178,6 +197,7 @@ pub fn explained(
     progress: DiagnosisProgress<'_>,
 ) -> Result<Option<EffectSearchResult>, DiagnosisError> {
     let mut watch = StageWatch { progress, stopped: false };
+    // without a budget: one hypothesis is fitted to the end, however long that takes
     let (search, base) = begun(problem, held, None, &mut watch)?;
     watch.begin(Stage::Fit(1)).ok_or(DiagnosisError::Stopped)?;
     let sensors = &search.chooser.criteria.sensors;
@@ -191,6 +211,7 @@ pub fn explained(
     else {
         return Ok(None);
     };
+    // there is nothing to be indistinguishable from
     let taken = vec![AcceptedEffect { hypothesis, evidence: *evidence, t: *t, closes, set: Vec::new() }];
     let said = reason
         .as_ref()
@@ -198,7 +219,7 @@ pub fn explained(
     Ok(Some(EffectSearchResult { base, last, taken, shape: None, visible: 1.0, asked: Some(said), trials }))
 }
 
-/// The model within its tolerances, and what a search needs.
+/// Fits the nominal model within its tolerances and sets up the search.
 fn begun<'a>(
     problem: &'a DiagnosisProblem<'a>,
     held: &'a [RecordingData],
@@ -209,11 +230,13 @@ fn begun<'a>(
     let sensors = models::sensors(problem);
     let nominal = models::nominal(problem).map_err(DiagnosisError::Model)?;
     let x = nominal.present();
+    // an unlimited budget of a slow model is counted in simulations, which are timed here
     let ends = Deadline::of(budget, || drop(nominal.evaluate(&x, &problem.train)));
     let until = ends.of_step();
     let base = weighed(problem, &sensors, (nominal.clone(), x.clone()), until);
     let base = base.ok_or_else(|| stops(problem, &nominal, &x))?;
     let base = settled(problem, &sensors, base, until);
+    // gaps before any effect: later effects must close a part of these too
     let first = (0..sensors.noise.len()).map(|i| left_by(&base.left[0], i, &sensors)).collect();
     let criteria = SelectionCriteria { sensors, first, count: problem.hypotheses.len() };
     let held = HoldoutRecordings::new(held, &nominal, &x, &criteria.sensors);
@@ -230,13 +253,13 @@ fn begun<'a>(
     Ok((search, base))
 }
 
-/// A hypothesis for which the time did not last.
+/// Entry for a hypothesis that was not fitted for lack of time.
 fn passed(step: usize, hypothesis: usize) -> HypothesisTrial {
     let chosen = HypothesisValues { hypothesis, values: Vec::new() };
     HypothesisTrial { step, chosen, found: None, reason: Some(RejectionReason::Behind) }
 }
 
-/// Where the nominal model stops.
+/// The error that names the recording in which the nominal model stops, and when.
 fn stops(problem: &DiagnosisProblem<'_>, nominal: &CandidateModel, x: &[f64]) -> DiagnosisError {
     let stop = |(r, file): (&RecordingData, &String)| Some(DiagnosisError::Stops(file.clone(), nominal.stops(x, r)?));
     let first = problem.train.iter().zip(&problem.files).find_map(stop);
@@ -244,12 +267,16 @@ fn stops(problem: &DiagnosisProblem<'_>, nominal: &CandidateModel, x: &[f64]) ->
 }
 
 impl EffectSearch<'_> {
+    /// The hypothesis of this index.
     fn h(&self, index: usize) -> &Hypothesis {
         &self.problem.hypotheses[index]
     }
 
-    /// The rival that is taken. If from its parameters the model before comes out so well that the rival shows nothing beside
-    /// it, that one was not at its optimum: it moves there, and the rivals are compared with it again.
+    /// Chooses a rival, and records all rivals of the step as trials.
+    ///
+    /// The model before may not have been at its optimum. It is therefore fitted anew from the parameters of the chosen
+    /// rival. If the rival then gains no more than the evidence that is needed, that fit replaces the model before, and
+    /// the rivals are compared again (`docs/gap_method.md`, "The model before is at its optimum").
     fn choose(
         &mut self,
         step: usize,
@@ -257,6 +284,7 @@ impl EffectSearch<'_> {
         rivals: Vec<RivalHypothesis>,
     ) -> Option<(CrossValidatedFit, AcceptedEffect)> {
         let mut choice = self.chooser.choose(step, before, rivals.clone(), self.ends);
+        // each pass takes a model before that left-out data prefer; the limit bounds the time
         for _ in 0..SETTLING {
             let sensors = &self.chooser.criteria.sensors;
             let Some((rival, _)) = &choice.taken else { break };
@@ -272,7 +300,7 @@ impl EffectSearch<'_> {
         choice.taken
     }
 
-    /// Looks for one more effect.
+    /// Searches for one more effect beside `before`; `None` if nothing is accepted.
     fn step(
         &mut self,
         step: usize,
@@ -283,7 +311,8 @@ impl EffectSearch<'_> {
         self.beside(step, before, &open, watch)
     }
 
-    /// The best of some hypotheses beside a model.
+    /// Chooses the best of the hypotheses `open` beside a model; `None` if nothing is accepted or the search was
+    /// stopped.
     fn beside(
         &mut self,
         step: usize,
@@ -296,12 +325,14 @@ impl EffectSearch<'_> {
         self.choose(step, before, rivals)
     }
 
+    /// Indices of all hypotheses that are shapes.
     fn shapes(&self) -> Vec<usize> {
         (0..self.problem.hypotheses.len()).filter(|&i| self.h(i).is_shape()).collect()
     }
 
-    /// A shape beside a model to which no effect could be added; or an effect after all, if with a shape it is sure that
-    /// something is missing.
+    /// Tries shapes beside a model to which no effect could be added.
+    /// If a shape is sure, something is missing: then the undecided effects compete with the shapes again, and an
+    /// effect that explains as much is accepted after all. `None` if nothing is accepted.
     fn shape(&mut self, step: usize, last: &mut CrossValidatedFit) -> Option<(CrossValidatedFit, AcceptedEffect)> {
         let mut rivals = self.rivals(step, last, &self.shapes(), None);
         self.shape_says_more = !rivals.is_empty();
@@ -309,7 +340,7 @@ impl EffectSearch<'_> {
             self.trials.append(&mut self.passed);
             return None;
         }
-        // they are weighed once: now
+        // the undecided ones are judged again now; their first entry would appear twice
         let again =
             |t: &HypothesisTrial| t.step == step && self.undecided.iter().any(|r| r.hypothesis == t.chosen.hypothesis);
         self.trials.retain(|t| !again(t));
@@ -317,8 +348,8 @@ impl EffectSearch<'_> {
         self.choose(step, last, rivals)
     }
 
-    /// A shape in the place of the only effect, where one may say something beside it, if it surely leaves less: then the
-    /// effect is named for want of a better one.
+    /// A shape in place of the only accepted effect, if it leaves a smaller gap and surely less.
+    /// `None` if no shape was promising beside the effect, or none is better.
     fn shape_instead(
         &mut self,
         base: &CrossValidatedFit,
@@ -328,6 +359,7 @@ impl EffectSearch<'_> {
         if !self.shape_says_more {
             return None;
         }
+        // undecided effects take no part: the comparison is between the accepted effect and shapes
         self.undecided.clear();
         let (model, shape) = self.beside(2, &mut base.clone(), &self.shapes(), watch)?;
         let SelectionCriteria { sensors, .. } = &self.chooser.criteria;
@@ -335,13 +367,18 @@ impl EffectSearch<'_> {
         leaves_less.then_some(shape)
     }
 
-    /// Hypotheses with a name that may be tried beside what was taken.
+    /// Indices of the named hypotheses that may be tried beside the accepted ones.
+    ///
+    /// Left out are shapes, hypotheses that are accepted already, other forms of an accepted law at the same place, and
+    /// parameters without a known tolerance. Errors of recordings are tried only before anything is accepted: a wrong
+    /// unit is wrong from the beginning.
     fn open(&self, before: &ModelFit) -> Vec<usize> {
         let taken: Vec<usize> = before.candidate.causes.iter().map(|c| c.hypothesis).collect();
         let one_law = |i: usize, t: usize| {
             let (a, b) = (self.h(i), self.h(t));
             a.law() == b.law() && a.attachments[0].site.is_at(&b.attachments[0].site)
         };
+        // a parameter that the study leaves free has no data sheet value from which it could deviate
         let known = |i: usize, t: &ToleranceParameter| t.name == self.h(i).attachments[0].place.place && !t.free;
         let may_be_off =
             |i: usize| self.h(i).family != "parameter" || self.problem.tolerances.iter().any(|t| known(i, t));
@@ -352,7 +389,8 @@ impl EffectSearch<'_> {
         (0..self.problem.hypotheses.len()).filter(open).collect()
     }
 
-    /// The rivals of a step, each fitted.
+    /// Screens and fits the hypotheses of a step.
+    /// Empty if no gap is worth a name, if the time is over, or if `watch` ends the search.
     fn rivals(
         &mut self,
         step: usize,
@@ -360,18 +398,21 @@ impl EffectSearch<'_> {
         open: &[usize],
         watch: Option<&mut StageWatch<'_>>,
     ) -> Vec<RivalHypothesis> {
+        // The first step always screens, because `visible` is determined by it.
         if self.visible.is_some() && self.chooser.criteria.nothing_is_worth_it(before) {
             return Vec::new();
         }
-        // a step that ends before it begins would only add to what was fitted when there was time
+        // Behind the deadline no further step begins; its hypotheses are recorded as not fitted.
         if self.visible.is_some() && self.ends.is_over() {
             self.passed = open.iter().map(|&i| passed(step, i)).collect();
             return Vec::new();
         }
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
         let ground = ScreeningContext { problem, sensors, before: &before.fit };
+        // screening may take half of the time of the step, the fits have the rest
         let until = self.ends.of_step();
         let screen = screened(&ground, open, until.of_step());
+        // share of the hypotheses that gain more than `SEEN` nats
         let seen = |visible: &[f64]| visible.iter().filter(|v| **v > SEEN).count() as f64 / visible.len().max(1) as f64;
         self.visible.get_or_insert(seen(&screen.visible));
         if watch.is_some_and(|w| w.begin(Stage::Fit(step)).is_none()) {
@@ -382,20 +423,21 @@ impl EffectSearch<'_> {
         found.rivals
     }
 
-    /// The model of a step that is taken: with its widths free, at its optimum.
+    /// The chosen model with the widths of its corners free, where that is better, fitted to its optimum.
     fn freed(&self, chosen: CrossValidatedFit) -> CrossValidatedFit {
         let (problem, sensors) = (self.problem, &self.chooser.criteria.sensors);
         let wider = widened(problem, sensors, &chosen, self.ends);
         settled(problem, sensors, wider.unwrap_or(chosen), self.ends)
     }
 
-    /// A model fitted from where it is.
+    /// Fits a model from its present parameters with both weightings; `None` if it cannot be simulated.
     fn weighed(&self, model: CandidateModel) -> Option<CrossValidatedFit> {
         let x = model.present();
         weighed(self.problem, &self.chooser.criteria.sensors, (model, x), self.ends)
     }
 
-    /// Drops what was taken before and is not missed any more.
+    /// Drops earlier effects without which the model is not surely worse.
+    /// The effect accepted last stays: it has just passed the criteria.
     fn drop_needless(&self, last: &mut CrossValidatedFit, taken: &mut Vec<AcceptedEffect>) {
         let mut i = 0;
         while i + 1 < taken.len() {
@@ -413,6 +455,7 @@ impl EffectSearch<'_> {
         }
     }
 
+    /// Whether an error of a recording was accepted.
     fn is_recording_error(&self, taken: &[AcceptedEffect]) -> bool {
         taken.iter().any(|t| self.h(t.hypothesis).is_recording_error())
     }

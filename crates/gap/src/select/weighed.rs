@@ -1,4 +1,8 @@
-//! Models with what they leave of left-out data, by both weightings.
+//! Fits with their left-out errors, by two weightings of the signals.
+//!
+//! A MAP estimate weighs errors as large and as correlated as it leaves them, so it can have two solutions: one in
+//! which the tolerances hold and one in which the data do. Both are tried here, and left-out data with the prior
+//! decide. Called by `search`, `rivals` and the verdict. Method: `docs/gap_method.md`, "Two weightings".
 
 use super::super::clock::Deadline;
 use super::super::estimate::{CandidateModel, FitTask, ModelFit, SignalWeights};
@@ -8,17 +12,17 @@ use super::compare::{SensorAccuracy, differences, evidence, gap, signal_gap, t_s
 use super::folds::{LeftOutErrors, left_out};
 use super::models;
 
-/// A fit with what it leaves of left-out data.
+/// A fitted model with its left-out errors.
 #[derive(Clone, Debug)]
 pub struct CrossValidatedFit {
-    /// The fit.
+    /// The fit to all train data.
     pub fit: ModelFit,
-    /// By pieces, and by recordings where there are enough.
+    /// Left-out errors by scheme: first by pieces, then by recordings if there are enough of them.
     pub left: Vec<LeftOutErrors>,
 }
 
 impl CrossValidatedFit {
-    /// Simulates what was left out.
+    /// Computes the left-out errors of a fit.
     pub fn new(problem: &DiagnosisProblem<'_>, fit: ModelFit) -> Self {
         CrossValidatedFit { left: left_out(&fit, &problem.train), fit }
     }
@@ -29,8 +33,8 @@ impl CrossValidatedFit {
     }
 }
 
-/// Both weightings: errors as they are now (tolerances hold), and as if only the sensors' noise were left (the data hold).
-/// Left-out data and the prior decide. Once the time is over the first one stands.
+/// Fits a model from the coordinates `x` with both weightings and keeps the one that left-out data and the prior
+/// prefer. The second weighting is left out behind the deadline. `None` if the model cannot be simulated.
 pub fn weighed(
     problem: &DiagnosisProblem<'_>,
     sensors: &SensorAccuracy,
@@ -43,8 +47,8 @@ pub fn weighed(
     Some(other.unwrap_or(one))
 }
 
-/// A model fitted again with the weights that it left, until left-out data see no difference or the time is over: what is
-/// not at its optimum would be improved by any effect. The first of these fits takes the time that it needs.
+/// Fits a model again with the weights that it left, until left-out data see no difference or the time is over.
+/// A model that is not at its optimum would be improved by any effect.
 pub fn settled(
     problem: &DiagnosisProblem<'_>,
     sensors: &SensorAccuracy,
@@ -52,6 +56,7 @@ pub fn settled(
     until: Deadline<'_>,
 ) -> CrossValidatedFit {
     for round in 0..SETTLING {
+        // the first round ignores the deadline, so that every accepted model is fitted at least once more
         let until = if round == 0 { Deadline::default() } else { until };
         if until.is_over() {
             break;
@@ -67,7 +72,7 @@ pub fn settled(
     model
 }
 
-/// The model with the widths of all its effects free, where that is better.
+/// The model with the widths of all its effects free; `None` if it has no widths or left-out data do not prefer it.
 pub fn widened(
     problem: &DiagnosisProblem<'_>,
     sensors: &SensorAccuracy,
@@ -84,15 +89,15 @@ pub fn widened(
     (ahead(one, &fitted, sensors) > 0.0).then_some(fitted)
 }
 
-/// The model before a rival, fitted anew from where parameters are in the rival, where that is better. It takes the time that
-/// it needs: what is not at its optimum would make a claim of any effect.
+/// The model before a rival, fitted anew from the rival's parameters; `None` if left-out data do not prefer that.
+/// It has no deadline, since a model before that is not at its optimum would make an effect of anything.
 pub fn as_in(
     problem: &DiagnosisProblem<'_>,
     sensors: &SensorAccuracy,
     before: &CrossValidatedFit,
     rival: &ModelFit,
 ) -> Option<CrossValidatedFit> {
-    // the coordinates of the cause that it has beyond the model before stand last
+    // the rival has the same coordinates first; those of its additional cause come last
     let x = rival.x[..before.fit.x.len()].to_vec();
     let other = CrossValidatedFit::new(
         problem,
@@ -101,12 +106,13 @@ pub fn as_in(
     better(before, &other, sensors).then_some(other)
 }
 
-/// A fit that weighs errors as large and as correlated as it leaves them.
+/// A fit that weighs errors as large and as correlated as it leaves them, in two rounds.
 fn as_they_are(task: FitTask<'_>, candidate: CandidateModel, x: Vec<f64>) -> Option<ModelFit> {
     ModelFit::of(candidate, x, task, None, 2)
 }
 
-/// The same of a model that holds the one before: where it comes out behind, it begins with the weights of that one.
+/// The same for a model that contains the model `before`.
+/// If it comes out behind that one, it is fitted from the weights of `before` too, and the better fit counts.
 pub fn no_worse(task: FitTask<'_>, before: &ModelFit, candidate: CandidateModel, x: Vec<f64>) -> Option<ModelFit> {
     let fit = as_they_are(task, candidate.clone(), x.clone());
     if fit.as_ref().is_some_and(|f| before.ahead(f) >= 0.0) {
@@ -117,7 +123,7 @@ pub fn no_worse(task: FitTask<'_>, before: &ModelFit, candidate: CandidateModel,
     fit.into_iter().chain(other).reduce(ModelFit::better_of)
 }
 
-/// The fit that begins where only the sensors' noise is left, where it is better.
+/// A fit that begins as if only the sensors' noise were left; `None` if left-out data do not prefer it to `one`.
 pub fn at_the_noise(
     problem: &DiagnosisProblem<'_>,
     sensors: &SensorAccuracy,
@@ -127,20 +133,22 @@ pub fn at_the_noise(
     let task = problem.task(until);
     let white = SignalWeights::sensors(&sensors.noise, &problem.full_scale);
     let (candidate, x) = (one.fit.candidate.clone(), one.fit.x.clone());
+    // one round with white weights, then the usual weighting from the point that it found
     let begun = ModelFit::of(candidate, x, task, Some(white), 1)?;
     let other = CrossValidatedFit::new(problem, as_they_are(task, begun.candidate, begun.x)?);
     better(one, &other, sensors).then_some(other)
 }
 
-/// Whether left-out data prefer the second of two fits of one model: by their evidence, or block by block.
+/// Whether left-out data surely prefer the second of two fits of one model: by [`OTHER_WEIGHTING`] nats, or by any
+/// evidence with a t statistic over blocks above [`SURE`].
 fn better(one: &CrossValidatedFit, other: &CrossValidatedFit, sensors: &SensorAccuracy) -> bool {
     let ahead = ahead(one, other, sensors);
     let surely = || t_statistic(&differences(&one.left[0], &other.left[0], sensors)) > SURE;
     ahead > OTHER_WEIGHTING || ahead > 0.0 && surely()
 }
 
-/// The fit that begins with parameters at their data sheet, where they are bent away from it and that is better: what was
-/// missing before bent them, and from there the fit with it need not find back.
+/// A fit that begins with the parameters at their data sheet; `None` if they are near it, or left-out data do not
+/// prefer it. What was missing before has bent the parameters, and the fit with the effect need not find back.
 pub fn from_nominal(
     problem: &DiagnosisProblem<'_>,
     sensors: &SensorAccuracy,
@@ -156,30 +164,33 @@ pub fn from_nominal(
     (ahead(one, &other, sensors) > 0.0).then_some(other)
 }
 
-/// A point with all parameters in their tolerances at their nominal values.
+/// The coordinates `x` with all tolerance parameters at their nominal values.
 pub fn at_nominal(problem: &DiagnosisProblem<'_>, candidate: &CandidateModel, x: &[f64]) -> Vec<f64> {
     let nominal = candidate.coordinates.iter().zip(&problem.tolerances).map(|(c, t)| c.of(t.nominal));
+    // tolerance parameters are always the first coordinates
     nominal.chain(x[problem.tolerances.len()..].iter().copied()).collect()
 }
 
-/// Evidence of left-out data for the second model, nats.
+/// Evidence of left-out data for `b` over `a`, nats, by the scheme of this index.
+/// The number of independent samples follows from the larger correlation time of the two fits.
 pub fn nats(a: &CrossValidatedFit, b: &CrossValidatedFit, scheme: usize, sensors: &SensorAccuracy) -> f64 {
     let tau = |i: usize| a.fit.weights.tau[i].max(b.fit.weights.tau[i]);
     let independent: Vec<f64> = (0..sensors.noise.len()).map(|i| a.fit.samples(i) / tau(i)).collect();
     evidence(&a.left[scheme], &b.left[scheme], &independent, sensors)
 }
 
-/// What the second model saves of the prior, nats: without an effect parameters bend, which left-out data do not see.
+/// Prior that `b` saves over `a`, nats.
+/// Without the effect parameters move off their data sheet, which left-out data cannot see.
 pub fn saved(a: &CrossValidatedFit, b: &CrossValidatedFit) -> f64 {
     a.fit.prior() - b.fit.prior()
 }
 
-/// Nats by which left-out pieces and the prior prefer the second model.
+/// Nats by which left-out pieces and the prior prefer `b` to `a`.
 pub fn ahead(a: &CrossValidatedFit, b: &CrossValidatedFit, sensors: &SensorAccuracy) -> f64 {
     nats(a, b, 0, sensors) + saved(a, b)
 }
 
-/// Noise-free gap of a signal, in its unit, never quite closed.
+/// Noise-free gap of a signal in its SI unit; a small positive number where it is closed, so that ratios exist.
 pub fn left_by(left: &LeftOutErrors, signal: usize, sensors: &SensorAccuracy) -> f64 {
     signal_gap(left, signal, sensors).max(0.1 * LEAST * sensors.full_scale[signal])
 }

@@ -1,4 +1,8 @@
-//! What a search came to, said as a verdict.
+//! From the result of a search to the verdict.
+//!
+//! Enters: the problem, an [`EffectSearchResult`] and the held recordings. Leaves: a [`Verdict`]. Simulates the nominal
+//! model, the one within tolerances and the corrected one on all recordings, and fits models with some of the effects
+//! for the figures of what each effect closes. Called by `diagnose`.
 
 use super::super::circuit::same_kind;
 use super::super::clock::Deadline;
@@ -22,10 +26,10 @@ use super::{alternative, ratio, spots};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Litres a minute in a cubic metre a second.
+/// Litres per minute in one cubic metre per second.
 const LITRES_A_MINUTE: f64 = 60_000.0;
 
-/// The verdict; without held recordings the train ones stand in.
+/// The verdict of a search that took `seconds`. Without held recordings the train recordings stand in for them.
 pub fn conclude(
     problem: &DiagnosisProblem<'_>,
     found: &EffectSearchResult,
@@ -38,27 +42,36 @@ pub fn conclude(
         found,
         held: if held.is_empty() { &problem.train } else { held },
         own: held.is_empty(),
+        // the rule of all estimates needs a run with sensitivities; if that stops early, the information matrix stands
+        // in
         deviations: last.uncertainty(&problem.train).unwrap_or_else(|| last.deviations()),
     };
     conclusion.verdict(seconds)
 }
 
+/// Everything from which a verdict is made.
 struct VerdictBuilder<'a> {
+    /// What was diagnosed.
     problem: &'a DiagnosisProblem<'a>,
+    /// Result of the search.
     found: &'a EffectSearchResult,
+    /// Held recordings, or the train ones.
     held: &'a [RecordingData],
-    /// There are no held recordings: these are the train ones.
+    /// There are no held recordings: `held` are the train recordings.
     own: bool,
-    /// Standard deviation of each coordinate of the model that is named.
+    /// Standard deviation of each coordinate of the last model, in the coordinate's units.
     deviations: Vec<f64>,
 }
 
 impl VerdictBuilder<'_> {
+    /// Builds the verdict. Three models are compared: the nominal one, the one within tolerances, and the one with all
+    /// effects.
     fn verdict(&self, seconds: f64) -> Verdict {
         let (problem, found) = (self.problem, self.found);
         let base = &found.base.fit;
         let nominal = at_nominal(problem, &base.candidate, &base.x);
         let last = &found.last.fit;
+        // the nominal model is the one within tolerances at its data sheet
         let models = [(&base.candidate, &nominal), (&base.candidate, &base.x), (&last.candidate, &last.x)];
         let on_held = models.map(|(c, x)| self.left(c, x));
         let on_train = models.map(|(c, x)| GapFigures::of(&errors(c, x, &problem.train, true)));
@@ -67,6 +80,7 @@ impl VerdictBuilder<'_> {
         let open = figures::open(problem, &on_held[2], self.held);
         let recording = self.recording();
         let named: Vec<VerdictEffect> = self.effects([&on_held[1], &on_held[2]]);
+        // the order is part of the schema: the first that holds
         let verdict = match () {
             () if !recording.is_empty() => "recording_error",
             () if !named.is_empty() => "effects",
@@ -104,19 +118,23 @@ impl VerdictBuilder<'_> {
         }
     }
 
+    /// Figures of a model at the coordinates `x` on the held recordings, without noise subtracted.
     fn left(&self, candidate: &CandidateModel, x: &[f64]) -> GapFigures {
         GapFigures::of(&errors(candidate, x, self.held, self.own))
     }
 
+    /// The hypothesis of chosen values.
     fn of(&self, chosen: &HypothesisValues) -> &Hypothesis {
         &self.problem.hypotheses[chosen.hypothesis]
     }
 
+    /// The hypothesis of an accepted effect.
     fn hypothesis(&self, taken: &AcceptedEffect) -> &Hypothesis {
         &self.problem.hypotheses[taken.hypothesis]
     }
 
-    /// What is left, and the shape that it has where it has one.
+    /// What stays unexplained, with the place and form of an accepted shape. `share`: part of the nominal gap that is
+    /// left.
     fn unexplained(&self, share: OptionalNumber) -> UnexplainedGap {
         let shape = self.found.shape.as_ref().map(|s| (s, self.hypothesis(s)));
         let term = |(taken, h): (&AcceptedEffect, &Hypothesis)| {
@@ -130,7 +148,8 @@ impl VerdictBuilder<'_> {
         }
     }
 
-    /// The mistakes of the recordings, one of a column is in every file; with those that the data cannot tell from it.
+    /// Errors of the recordings: an entry for each file, also for errors that cannot be told from the accepted one.
+    /// A wrong unit of a column is in every file of the study.
     fn recording(&self) -> Vec<RecordingError> {
         let named = self.found.taken.iter().filter(|t| self.hypothesis(t).is_recording_error());
         let with = |t: &AcceptedEffect| {
@@ -146,7 +165,8 @@ impl VerdictBuilder<'_> {
         self.problem.files.iter().flat_map(|f| mistakes.iter().map(move |h| of_file(h, f))).collect()
     }
 
-    /// Effects, with what each closes of the gap within tolerances.
+    /// Accepted effects with what each closes of the gap within tolerances. Errors of recordings are left out.
+    /// The two figures are those of the model within tolerances and of the model with all effects, on held recordings.
     fn effects(&self, [tolerated, last]: [&GapFigures; 2]) -> Vec<VerdictEffect> {
         let total = |l: &GapFigures| l.total(&self.problem.full_scale);
         let (tolerated, full) = (total(tolerated), total(last));
@@ -158,6 +178,7 @@ impl VerdictBuilder<'_> {
             if h.is_recording_error() {
                 return None;
             }
+            // each model is fitted anew, so that other parameters can take over
             let (alone, without) = (gaps[&vec![i]], gaps[&without(i, taken.len())]);
             Some(VerdictEffect {
                 effect: h.effect.clone(),
@@ -176,7 +197,8 @@ impl VerdictBuilder<'_> {
         taken.iter().enumerate().filter_map(effect).collect()
     }
 
-    /// The held gaps of the models with each effect alone, and with all others; nothing and everything are known.
+    /// Held gaps of the models with each effect alone, and with all others, by the numbers of the effects that are
+    /// kept. `tolerated` is the gap without any effect and `full` that with all; neither is computed again.
     fn gaps_with(&self, tolerated: OptionalNumber, full: OptionalNumber) -> BTreeMap<Vec<usize>, OptionalNumber> {
         let taken = &self.found.taken;
         let effects = (0..taken.len()).filter(|&i| !self.hypothesis(&taken[i]).is_recording_error());
@@ -192,7 +214,8 @@ impl VerdictBuilder<'_> {
         kept.into_par_iter().map(gap).collect()
     }
 
-    /// What flows through each effect that is no signal and no parameter, by its number.
+    /// What flows through each effect over the train recordings, by its number; none for signals and parameters.
+    /// The model with all effects is simulated from its own start, with the fitted parameters.
     fn flows(&self) -> BTreeMap<usize, EffectFlow> {
         let fit = &self.found.last.fit;
         let causes = fit.causes();
@@ -207,6 +230,7 @@ impl VerdictBuilder<'_> {
             let shown = self.spoken(&interface.through.as_ref()?.unit);
             let largest = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             let rms = (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
+            // an effect through which nothing flows has no figure
             let known = largest.is_finite() && largest > 0.0;
             known.then(|| {
                 (i, EffectFlow { largest: shown.value(largest), rms: shown.value(rms), unit: shown.unit.clone() })
@@ -215,7 +239,8 @@ impl VerdictBuilder<'_> {
         numbers.into_iter().zip(found).filter_map(flow).collect()
     }
 
-    /// The unit in which the study speaks of a quantity: that of one of its columns, else what engineers use.
+    /// Unit in which a quantity is shown: that of a column of the same kind, else l/min for volume flows, else its own.
+    /// `unit`: the unit as the model writes it.
     fn spoken(&self, unit: &str) -> SignalDisplayUnit {
         let own = self.problem.signals.iter().zip(&self.problem.shown);
         let alike = own.filter(|(s, _)| same_kind(&self.problem.unit(s), unit)).map(|(_, shown)| shown.clone());
@@ -224,7 +249,8 @@ impl VerdictBuilder<'_> {
         alike.chain(usual).next().unwrap_or(SignalDisplayUnit { unit: unit.into(), factor: 1.0 })
     }
 
-    /// The held gap of the model with some of the effects, fitted anew.
+    /// Held gap of the model with some of the effects, fitted anew; `None` if it cannot be simulated.
+    /// `kept`: numbers of the effects. The fit has no deadline.
     fn gap_with(&self, kept: &[usize]) -> OptionalNumber {
         let all = self.found.last.fit.causes();
         let causes: Vec<HypothesisValues> = kept.iter().map(|&i| all[i].clone()).collect();
@@ -236,10 +262,12 @@ impl VerdictBuilder<'_> {
         self.left(&fit.candidate, &fit.x).total(&self.problem.full_scale)
     }
 
+    /// Estimates of the coefficients and shapes of the i-th effect, by name, with standard deviations.
+    /// Those of a sensor effect that count in the unit of its signal also get the unit of the study's column.
     fn estimates(&self, i: usize, h: &Hypothesis) -> BTreeMap<String, ParameterEstimate> {
         let fit = &self.found.last.fit;
         let theta = fit.candidate.theta(&fit.x);
-        // what counts in the unit of a signal is shown in that of its column
+        // a relative parameter counts in the unit of the signal and is shown in the unit of its column
         let sensor = match &h.attachments[0].site {
             AttachmentSite::Sensor(name) => self.problem.signals.iter().position(|s| s.name == *name),
             _ => None,
@@ -253,12 +281,14 @@ impl VerdictBuilder<'_> {
         let names = coefficients.chain(h.shapes.iter().map(|s| (&s.name, of_signal(s.relative, &s.unit))));
         let estimate = |(&place, (name, (unit, shown))): (&usize, (&String, (String, Option<SignalDisplayUnit>)))| {
             let free = fit.candidate.coordinates.iter().position(|c| c.parameter == place);
+            // first order: deviation of the coordinate times its derivative
             let std = free.map_or(0.0, |k| self.deviations[k] * fit.candidate.coordinates[k].slope(fit.x[k]));
             (name.clone(), ParameterEstimate { value: theta[place], std, unit, shown })
         };
         fit.candidate.model.attached[i].iter().zip(names).map(estimate).collect()
     }
 
+    /// All parameters with tolerances, as fitted in the last model, in the order of the problem.
     fn drifts(&self) -> Vec<ParameterDrift> {
         let fit = &self.found.last.fit;
         let theta = fit.candidate.theta(&fit.x);
@@ -272,6 +302,8 @@ impl VerdictBuilder<'_> {
         self.problem.tolerances.iter().enumerate().map(drift).collect()
     }
 
+    /// A trial as the verdict lists it, with the reason in words.
+    /// Scores are `None` where the hypothesis was not fitted.
     fn weighed(&self, trial: &HypothesisTrial) -> super::HypothesisAssessment {
         let h = self.of(&trial.chosen);
         super::HypothesisAssessment {
@@ -286,7 +318,8 @@ impl VerdictBuilder<'_> {
         }
     }
 
-    /// Places of what was taken first, then those of the best explanations of the first step.
+    /// Places of what was accepted first, then those of the other hypotheses of the first step, with their evidence.
+    /// Each place is listed once, with the first evidence that names it.
     fn places(&self) -> Vec<PlaceEvidence> {
         let mut all: Vec<PlaceEvidence> = Vec::new();
         let mut add = |h: &Hypothesis, evidence: f64| {
@@ -301,12 +334,15 @@ impl VerdictBuilder<'_> {
         for t in self.found.trials.iter().filter(|t| t.step == 1) {
             add(self.of(&t.chosen), t.found.map_or(0.0, |f| f.evidence));
         }
+        // shares are among the places that are listed
         let total: f64 = all.iter().map(|l| l.evidence).sum();
         all.iter_mut().for_each(|l| l.share = l.evidence / total);
         all
     }
 }
 
+/// Residuals of a model on recordings; `None` where a simulation stops early.
+/// `own`: they are the train recordings, so that coefficients per recording apply.
 fn errors(
     candidate: &CandidateModel,
     x: &[f64],
@@ -316,7 +352,7 @@ fn errors(
     recordings.par_iter().enumerate().map(|(i, r)| candidate.errors(x, r, own.then_some(i))).collect()
 }
 
-/// All but one of so many effects.
+/// Numbers of all effects but one, of `effects` in all.
 fn without(one: usize, effects: usize) -> Vec<usize> {
     (0..effects).filter(|k| *k != one).collect()
 }

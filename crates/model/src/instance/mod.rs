@@ -9,15 +9,17 @@ pub mod building;
 mod calls;
 mod errors;
 pub mod evaluation;
+mod tables;
 pub mod tree;
 pub mod views;
 
 pub use building::components::{ModelRequest, instantiate};
 pub use building::given::{GIVEN, Override};
-use building::{components, given, overconstrained};
+use building::{components, overconstrained};
 use calls::{builtin, call, files, procedure, vectorised};
 use evaluation::state;
 pub use evaluation::{algorithm, deduce, references, value};
+use tables::{BuildingTable, ClassTable, FunctionTable, ValueTable};
 pub use tree::{lookup, modifiers, template};
 pub use views::{
     BuiltinCalls, ComponentBuilder, Evaluator, ExternalCalls, FunctionCalls, NameLookup, Operators, ParameterValues,
@@ -27,9 +29,8 @@ pub use views::{
 use crate::resolve::{ClassId, Library};
 use bramah_expr::types::{ScalarType, StateSelect, Variability};
 use bramah_expr::{ExprId, Exprs, VarId};
-use bramah_results::table::TableMatrix;
 use bramah_syntax::ast;
-use bramah_syntax::diag::{Diagnostic, FileId, Span};
+use bramah_syntax::diag::{Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use modifiers::{Binding, Modifier};
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -268,48 +269,10 @@ pub struct Instance<'a, 'l> {
     pub exprs: Exprs,
     /// Enumeration types.
     pub enumerations: Vec<EnumerationDefinition>,
-    enumeration_index: FxHashMap<ClassId, u32>,
     /// The model itself.
     pub root: ScopeId,
     /// Messages so far.
     pub diagnostics: Vec<Diagnostic>,
-    templates: FxHashMap<(ClassId, LookupContext), Rc<Template<'a>>>,
-    packages: FxHashMap<(ClassId, LookupContext), ScopeId>,
-    /// Classes as they are written, without what they inherit: where their bases are looked up.
-    bare: FxHashMap<(ClassId, LookupContext), ScopeId>,
-    /// Classes whose bases are being looked up, innermost last.
-    gathering: Vec<(ClassId, LookupContext)>,
-    /// Redeclared classes whose constraints are being looked up, innermost last.
-    constrained: Vec<ClassId>,
-    /// Bases gathered since the outermost of these.
-    gathered: usize,
-    /// These go in circles many times over.
-    tangled: bool,
-    dynamic_packages: Vec<(ClassRef<'a>, ScopeId)>,
-    array_values: FxHashMap<(*const ast::Expr, LookupContext, bool), ModelicaValue>,
-    inner_declared: FxHashMap<(ScopeId, Symbol), NodeId>,
-    outer_checked: FxHashMap<(NodeId, *const ast::ComponentDeclaration), bool>,
-    /// Functions that were seen to keep to what functions may do.
-    functions_checked: FxHashSet<ClassId>,
-    /// Classes that were seen to keep to what their kind allows.
-    classes_checked: FxHashSet<ClassId>,
-    /// Parameters by whether their value is only found at the start.
-    at_start: FxHashMap<VarId, bool>,
-    procedures: FxHashMap<String, (bramah_expr::FunctionId, Vec<ModelicaValue>)>,
-    /// External functions that stay calls, by what they are.
-    externals: FxHashMap<String, bramah_expr::FunctionId>,
-    /// Compiled C functions, by the text of their wrappers.
-    #[cfg(feature = "fmi")]
-    compiled_c: FxHashMap<String, std::sync::Arc<dyn bramah_expr::function::ExternalFunction>>,
-    /// Classes of operator records, by the numbers that their values carry.
-    operator_records: Vec<ClassRef<'a>>,
-    /// Functions that were given as arguments.
-    functions: Vec<ClassRef<'a>>,
-    /// Tables read from files, by file and name.
-    tables: FxHashMap<(FileId, String), Rc<TableMatrix>>,
-    /// Units of other tools, by file and kind.
-    #[cfg(feature = "fmi")]
-    units: FxHashMap<(String, String), building::mockup::FmuClass>,
     /// Parameters will take other values without compiling again.
     pub varied: bool,
     /// Joined stream variables.
@@ -318,9 +281,10 @@ pub struct Instance<'a, 'l> {
     pub connected: FxHashMap<NodeId, u32>,
     /// Overconstrained connectors.
     pub overconstrained: overconstrained::OverconstrainedComponents<'a>,
-    variabilities: Vec<Variability>,
-    /// Values given from outside for single elements of arrays.
-    given_elements: Vec<given::GivenElement<'a>>,
+    classes: ClassTable<'a>,
+    functions: FunctionTable<'a>,
+    values: ValueTable,
+    building: BuildingTable<'a>,
     eval: state::EvaluationState,
 }
 
@@ -349,6 +313,13 @@ impl<'a> Instance<'a, '_> {
         &self.variables[self.order[id.index()] as usize]
     }
 
+    /// Does something that may fail without harm: its messages are handed back, to be kept or dropped.
+    pub fn attempt<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> (T, Vec<Diagnostic>) {
+        let before = self.diagnostics.len();
+        let done = act(self);
+        (done, self.diagnostics.split_off(before))
+    }
+
     fn report(&mut self, diagnostic: Diagnostic) {
         self.diagnostics.push(diagnostic);
     }
@@ -356,23 +327,25 @@ impl<'a> Instance<'a, '_> {
     /// When an expression may change.
     pub fn variability(&mut self, e: ExprId) -> Variability {
         use bramah_expr::ExprNode as N;
-        while self.variabilities.len() <= e.index() {
-            let id = ExprId(u32::try_from(self.variabilities.len()).expect("fewer than 2^32 nodes"));
+        while self.values.variabilities.len() <= e.index() {
+            let id = ExprId(u32::try_from(self.values.variabilities.len()).expect("fewer than 2^32 nodes"));
             let v = match self.exprs.node(id) {
                 N::Num(_) => Variability::Constant,
                 N::Time | N::Der(_) => Variability::Continuous,
                 N::Var(v) => self.leaf_variability(v),
                 N::Pre(_) | N::Sample(..) | N::Initial | N::Terminal => Variability::Discrete,
-                N::Delay(a, _) if self.variabilities[a.index()] > Variability::Parameter => Variability::Continuous,
+                N::Delay(a, _) if self.values.variabilities[a.index()] > Variability::Parameter => {
+                    Variability::Continuous
+                }
                 N::EventRel(..) | N::EventFloor(_) => {
                     let below = self.operand_variability(id);
                     below.min(Variability::Discrete)
                 }
                 _ => self.operand_variability(id),
             };
-            self.variabilities.push(v);
+            self.values.variabilities.push(v);
         }
-        self.variabilities[e.index()]
+        self.values.variabilities[e.index()]
     }
 
     /// The flow variable of the connector that a stream variable belongs to.
@@ -396,13 +369,11 @@ impl<'a> Instance<'a, '_> {
 
     /// The number that an expression of parameters has with their present values, if these can be told.
     pub fn number_of(&mut self, e: ExprId) -> Option<f64> {
-        let mark = self.diagnostics.len();
         let mut values = Vec::new();
         for v in self.exprs.variables(e) {
             let i = *self.order.get(v.index())?;
             let span = self.variables[i as usize].span;
-            let value = self.parameters().known_value(i, span);
-            self.diagnostics.truncate(mark);
+            let (value, _) = self.attempt(|s| s.parameters().known_value(i, span));
             values.push((self.exprs.var(v), value?.scalar()?.0));
         }
         let number = self.exprs.substitute(e, &values);
@@ -411,9 +382,8 @@ impl<'a> Instance<'a, '_> {
 
     /// The number that a parameter has, if it can be told, without fixing it.
     pub fn peek(&mut self, i: u32) -> Option<f64> {
-        let (mark, span) = (self.diagnostics.len(), self.variables[i as usize].span);
-        let value = self.without_fixing(|s| s.parameters().known_value(i, span));
-        self.diagnostics.truncate(mark);
+        let span = self.variables[i as usize].span;
+        let (value, _) = self.attempt(|s| s.without_fixing(|s| s.parameters().known_value(i, span)));
         value?.as_number(&self.exprs)
     }
 
@@ -437,24 +407,22 @@ impl<'a> Instance<'a, '_> {
         if data.variability != Variability::Parameter || data.string || data.object || data.constant.is_some() {
             return false;
         }
-        if let Some(&known) = self.at_start.get(&v) {
+        if let Some(&known) = self.values.found_at_start.get(&v) {
             return known;
         }
         // a circle of parameters has a message of its own
-        self.at_start.insert(v, false);
+        self.values.found_at_start.insert(v, false);
         let fixed = data.attributes.iter().find(|(n, _)| *n == "fixed").cloned();
         let found = match (data.binding.clone(), fixed) {
             (Some(b), _) => {
-                let mark = self.diagnostics.len();
-                let value = self.parameters().bound(i, &b, false);
-                self.diagnostics.truncate(mark);
+                let (value, _) = self.attempt(|s| s.parameters().bound(i, &b, false));
                 let scalar = value.and_then(|v| v.scalar());
                 scalar.is_some_and(|(e, _)| self.found_at_start(e))
             }
             (None, Some((name, b))) => self.parameters().known_attribute(i, name, &b, ScalarType::Boolean) == Some(0.0),
             (None, None) => false,
         };
-        self.at_start.insert(v, found);
+        self.values.found_at_start.insert(v, found);
         found
     }
 
@@ -469,7 +437,7 @@ impl<'a> Instance<'a, '_> {
 
     fn operand_variability(&self, e: ExprId) -> Variability {
         let operands = self.exprs.operands(e);
-        operands.as_slice().iter().map(|o| self.variabilities[o.index()]).max().unwrap_or(Variability::Constant)
+        operands.as_slice().iter().map(|o| self.values.variabilities[o.index()]).max().unwrap_or(Variability::Constant)
     }
 
     /// The name of a component as the user knows it.

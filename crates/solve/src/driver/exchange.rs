@@ -1,5 +1,8 @@
-//! A model whose integrator is the caller's: time, states and inputs come from outside, derivatives and the functions that
-//! watch for events go there. Between events the modes are held; what an event does is what it does in any run.
+//! A model that the caller integrates, as FMI model exchange does.
+//!
+//! The caller sets time, states and inputs of an [`ExchangeDriver`] and reads derivatives and event indicators. Between
+//! events the modes stay as they are. At an event the caller calls [`ExchangeDriver::event`], which runs the same event
+//! iteration as any other run. Algebraic unknowns are solved at every evaluation.
 
 use super::{Driver, EarlyStop, EventCause, prepare, stop_at_start};
 use crate::algebraic::AlgebraicSolver;
@@ -12,35 +15,40 @@ use crate::settings::End;
 use crate::{RecordedInput, Settings};
 use bramah_syntax::diag::{Code, Diagnostic};
 
-/// What came of an event.
+/// What the caller must know after an event.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExchangeEventResult {
-    /// States have new values.
+    /// Whether states have new values, set by `reinit`.
     pub states_changed: bool,
-    /// The next event of known time (s).
+    /// The next event of known time in seconds; `None` when there is none.
     pub next: Option<f64>,
-    /// The message of `terminate`.
+    /// The message of `terminate`; `None` when the model did not end the run.
     pub terminated: Option<String>,
 }
 
-/// A model under way.
+/// A model at a time, with the discrete state of the last event.
 pub struct ExchangeDriver<'a> {
+    /// Events, modes and clocks; it has no integrator.
     driver: Driver<'a, 'a>,
+    /// The equations and the slots of all values.
     model: IntegrationModel<'a>,
+    /// Solves derivatives and algebraic unknowns from states.
     solver: AlgebraicSolver,
+    /// Unknowns, one per column of the system. The states among them are set by the caller.
     y: Vec<f64>,
+    /// Derivatives, one per column.
     yp: Vec<f64>,
-    /// The functions that watch for events, behind the last one.
+    /// Event indicators as the last event has left them.
     sides: Vec<f64>,
-    /// The same now.
+    /// Event indicators at the present time.
     now: Vec<f64>,
-    /// Derivatives, algebraic unknowns and variables fit to time, states and inputs.
+    /// Whether derivatives, algebraic unknowns and slots agree with time, states and inputs.
     fits: bool,
-    /// Time, unknowns and derivatives where they fitted last.
+    /// Time, unknowns and derivatives of the last solution, as a start for the next one.
     known: (f64, Vec<f64>, Vec<f64>),
 }
 
-/// Why a system cannot be integrated by others; `None` where it can.
+/// Why a system cannot be integrated by the caller; `None` where it can.
 pub fn refuses(system: &ExecutableSystem) -> Option<&'static str> {
     let dae = &system.dae;
     match () {
@@ -51,16 +59,16 @@ pub fn refuses(system: &ExecutableSystem) -> Option<&'static str> {
     }
 }
 
-/// How many functions watch for events of a system.
+/// Number of event indicators of a system.
 pub fn indicators(system: &ExecutableSystem) -> usize {
     RootFunctions::new(system).len()
 }
 
 impl<'a> ExchangeDriver<'a> {
-    /// At the start, with the event iteration done.
+    /// Initializes the model and runs the event iteration at the start.
     ///
     /// # Errors
-    /// As a run that ends there.
+    /// Initialization or the first event iteration failed.
     pub fn new(
         system: &'a ExecutableSystem,
         settings: &'a Settings,
@@ -79,13 +87,15 @@ impl<'a> ExchangeDriver<'a> {
         Ok(exchange)
     }
 
+    /// The system of this model.
     fn system(&self) -> &'a ExecutableSystem {
         self.driver.system
     }
 
-    /// Unknowns and sides from the values that an event has left.
+    /// Copies unknowns and event indicators from the values that an event has left.
     fn settle(&mut self) {
         let system = self.system();
+        // the buffers of the restart have one entry even without unknowns
         let n = system.columns.len();
         self.driver.restart.gather(system, &mut self.model.values);
         self.y.copy_from_slice(&self.driver.restart.y()[..n]);
@@ -95,23 +105,23 @@ impl<'a> ExchangeDriver<'a> {
         self.fits = false;
     }
 
-    /// Where time stands (s).
+    /// Present time in seconds.
     pub fn time(&self) -> f64 {
         self.driver.t
     }
 
-    /// Says where time stands.
+    /// Sets the present time in seconds. Derivatives are solved again at the next reading.
     pub fn set_time(&mut self, t: f64) {
         self.driver.t = t;
         self.fits = false;
     }
 
-    /// The columns of the states.
+    /// Columns of the states, ascending.
     fn columns(&self) -> impl Iterator<Item = usize> + use<'a> {
         self.system().columns.iter().enumerate().filter(|(_, c)| c.is_state()).map(|(j, _)| j)
     }
 
-    /// Sets the states; as many as there are.
+    /// Sets the states, in the order of [`ExchangeDriver::states`].
     pub fn set_states(&mut self, x: &[f64]) {
         for (j, value) in self.columns().zip(x) {
             self.y[j] = *value;
@@ -119,32 +129,34 @@ impl<'a> ExchangeDriver<'a> {
         self.fits = false;
     }
 
-    /// The states.
+    /// Values of the states, in the order of their columns.
     pub fn states(&self) -> Vec<f64> {
         self.columns().map(|j| self.y[j]).collect()
     }
 
-    /// Their usual sizes.
+    /// Nominal values of the states, in the same order.
     pub fn nominals(&self) -> Vec<f64> {
         self.columns().map(|j| self.driver.restart.nominal()[j]).collect()
     }
 
-    /// Sets an input by its slot.
+    /// Sets an input by its slot. A recording bound to this input is no longer played back.
     pub fn set(&mut self, slot: usize, value: f64) {
         self.model.playback.release(slot);
         self.model.values[slot] = value;
         self.fits = false;
     }
 
-    /// Solves for derivatives and algebraic unknowns.
+    /// Solves for derivatives and algebraic unknowns, unless they fit already.
     fn fit(&mut self) -> Result<(), EarlyStop> {
         if self.fits {
             return Ok(());
         }
         let t = self.driver.t;
         self.model.values[ValueLayout::TIME] = t;
+        // in this order: from the present values, then in small steps from the last solution
         if self.y.is_empty() || self.solve(t, self.y.clone()) || self.approach(t) {
             self.remember();
+        // the integrator may have stepped over an event, where the old modes admit no solution
         } else if !self.across(t) {
             return Err(self.unsolved());
         }
@@ -153,7 +165,7 @@ impl<'a> ExchangeDriver<'a> {
         Ok(())
     }
 
-    /// Solves from these unknowns and the derivatives at hand.
+    /// Solves from the unknowns `y` and the present derivatives; false when there is no solution.
     fn solve(&mut self, t: f64, y: Vec<f64>) -> bool {
         let Some((y, yp)) = self.solver.solved(&mut self.model, t, &y, &self.yp) else { return false };
         let (y, yp) = (y.to_vec(), yp.to_vec());
@@ -161,17 +173,18 @@ impl<'a> ExchangeDriver<'a> {
         true
     }
 
-    /// Notes where there was a solution last.
+    /// Stores the present point as the last one with a solution.
     fn remember(&mut self) {
         self.known.0 = self.driver.t;
         self.known.1.clone_from(&self.y);
         self.known.2.clone_from(&self.yp);
     }
 
-    /// Goes to the states in parts from where there was a solution last.
+    /// Moves time and states in equal parts from the last solution to the wanted point; false when a part fails.
     fn approach(&mut self, t: f64) -> bool {
         let (wanted, (from, y, yp)) = (self.y.clone(), self.known.clone());
         let columns: Vec<usize> = self.columns().collect();
+        // a fine subdivision only when the coarse one fails: each part costs a solution
         for parts in [4_u32, 32] {
             (self.y, self.yp) = (y.clone(), yp.clone());
             let arrives = (1..=parts).all(|k| {
@@ -184,15 +197,19 @@ impl<'a> ExchangeDriver<'a> {
                 return true;
             }
         }
+        // the wanted states stay for `across` and for the message
         (self.y, self.yp) = (wanted, yp);
         false
     }
 
-    /// Where there is no solution with the modes that hold: what would hold behind the event, as the functions that watch for
-    /// it then show. The modes stay.
+    /// Solves with the modes that would hold after the event, where the present modes admit no solution.
+    ///
+    /// The caller's integrator has then stepped past an event, and the indicators at these values show it. The stored
+    /// modes do not change. False when the event iteration fails.
     fn across(&mut self, t: f64) -> bool {
         let system = self.system();
         let Driver { events, scales, modes, restart, .. } = &mut self.driver;
+        // a copy: discrete variables must not change before the caller handles the event
         let mut values = self.model.values.clone();
         values[ValueLayout::TIME] = t;
         for (c, y) in system.columns.iter().zip(&self.y).filter(|(c, _)| c.is_state()) {
@@ -210,6 +227,7 @@ impl<'a> ExchangeDriver<'a> {
         true
     }
 
+    /// The error for a point without solution; it names the operation that is not finite, if there is one.
     fn unsolved(&mut self) -> EarlyStop {
         let (system, t) = (self.system(), self.driver.t);
         self.model.observe(t, &self.y, &self.yp);
@@ -223,26 +241,26 @@ impl<'a> ExchangeDriver<'a> {
         EarlyStop::new(End::StepTooSmall, diagnostic).with_troubles(system)
     }
 
-    /// The derivatives of the states.
+    /// Derivatives of the states with respect to time, in the order of [`ExchangeDriver::states`].
     ///
     /// # Errors
-    /// The equations have no solution there.
+    /// The equations have no solution at this point.
     pub fn derivatives(&mut self) -> Result<Vec<f64>, EarlyStop> {
         self.fit()?;
         Ok(self.columns().map(|j| self.yp[j]).collect())
     }
 
-    /// The functions whose change of sign is an event.
+    /// The functions whose changes of sign are events.
     ///
     /// # Errors
-    /// The equations have no solution there.
+    /// The equations have no solution at this point.
     pub fn indicators(&mut self) -> Result<&[f64], EarlyStop> {
         self.fit()?;
         self.model.crossings(self.driver.t, &self.y, &self.yp, &mut self.now);
         Ok(&self.now)
     }
 
-    /// How many there are.
+    /// Number of event indicators.
     pub fn indicator_count(&self) -> usize {
         self.sides.len()
     }
@@ -250,20 +268,20 @@ impl<'a> ExchangeDriver<'a> {
     /// The value in a slot.
     ///
     /// # Errors
-    /// The equations have no solution there.
+    /// The equations have no solution at this point.
     pub fn value(&mut self, slot: usize) -> Result<f64, EarlyStop> {
         self.fit()?;
         Ok(self.model.values[slot])
     }
 
-    /// Does what is due: where functions have changed their sign since the last event, where a known time is reached, and
-    /// where inputs have changed.
+    /// Handles the events that are due: sign changes since the last event, known times reached, and changed inputs.
     ///
     /// # Errors
-    /// As a run that ends there.
+    /// The event iteration failed, or an assertion does not hold.
     pub fn event(&mut self) -> Result<ExchangeEventResult, EarlyStop> {
         self.indicators()?;
         let t = self.driver.t;
+        // a function at exactly zero counts as negative, before and now
         let crossed = |(before, now): (&f64, &f64)| match (*before > 0.0, *now > 0.0) {
             (false, true) => 1,
             (true, false) => -1,
@@ -274,10 +292,12 @@ impl<'a> ExchangeDriver<'a> {
         let cause = if root { EventCause::Root } else { EventCause::Time };
         self.driver.statistics.events += 1;
         let padded = padded(&self.y);
+        // conserved quantities are compared with the values before the event
         self.driver.restart.before(self.driver.system, &mut self.model.values, &padded);
         if root {
             self.driver.prepare_event(&mut self.model, EventCause::Root);
         }
+        // a sample may be due at the same time as a root
         let due = self.next();
         if due <= t || same_time(due, t) {
             self.driver.prepare_event(&mut self.model, EventCause::Time);
@@ -297,17 +317,18 @@ impl<'a> ExchangeDriver<'a> {
         })
     }
 
+    /// The next sample or crossing of time in seconds; infinite when there is none.
     fn next(&self) -> f64 {
         self.driver.clocks.next().min(self.driver.next_crossing)
     }
 
-    /// Warnings since the last call.
+    /// Removes and returns the warnings recorded since the last call.
     pub fn warnings(&mut self) -> Vec<Diagnostic> {
         self.driver.warnings()
     }
 }
 
-/// At least one number, as the buffers of a restart have.
+/// `y`, or one zero where it is empty: the buffers of a restart are never empty.
 fn padded(y: &[f64]) -> Vec<f64> {
     if y.is_empty() { vec![0.0] } else { y.to_vec() }
 }

@@ -1,35 +1,41 @@
-//! A run that is taken further from outside, step by step, with inputs set in between.
+//! Stepping from outside: the caller sets inputs, advances the time, and reads values and state.
+//!
+//! These are the methods of a [`Driver`] made by [`super::start`]. The `circuit` crate builds its `Stepping` on them.
 
 use super::{Driver, EventCause, StopResult};
 use crate::{State, Statistics};
 use bramah_syntax::diag::Diagnostic;
 
 impl Driver<'_, '_> {
-    /// Where the run stands, in seconds.
+    /// Present time in seconds.
     pub fn time(&self) -> f64 {
         self.t
     }
 
-    /// The value in a slot, as last observed.
+    /// The value in a slot as last observed; NaN before the integrator exists.
     pub fn value(&self, slot: usize) -> f64 {
         self.ida.as_ref().map_or(f64::NAN, |ida| ida.watch().values[slot])
     }
 
-    /// Sets input slots, lets everything that depends on them react at once, as at an event, integrates to `t`, which
-    /// lies ahead, and observes all variables there.
+    /// Sets input slots, integrates to `t`, and observes all variables there.
+    ///
+    /// A changed input is an event at the present time. `t` must lie ahead of the present time.
     ///
     /// # Errors
-    /// As a run that ends before.
+    /// The run ended before `t`.
     pub fn advance(&mut self, inputs: &[(usize, f64)], t: f64) -> StopResult {
         self.go_to(inputs, t).map_err(|stop| stop.with_troubles(self.system))
     }
 
+    /// As [`Driver::advance`], without the messages of external functions.
     fn go_to(&mut self, inputs: &[(usize, f64)], t: f64) -> StopResult {
-        // first: whether the integrator's past still serves depends on how far the next step may go
+        // first, because whether IDA's past is still valid depends on how far the next step may go
         self.until = t;
         let model = self.ida().equations();
+        // an input set by the caller is no longer played back from its recording
         inputs.iter().for_each(|&(slot, _)| model.playback.release(slot));
         let values = &model.values;
+        // equal values cost no event and no restart
         if inputs.iter().any(|&(slot, value)| values[slot] != value) {
             self.pending.clear();
             self.pending.extend_from_slice(inputs);
@@ -40,7 +46,7 @@ impl Driver<'_, '_> {
         Ok(())
     }
 
-    /// Fills the slots of all variables where the run stands.
+    /// Computes all variables at the present time into their slots.
     pub fn observe(&mut self) {
         let t = self.t;
         self.with_model(|driver, model, y, yp| {
@@ -49,20 +55,20 @@ impl Driver<'_, '_> {
         });
     }
 
-    /// Everything needed to go on from here.
+    /// The state from which another run can continue at the present time.
     pub fn state(&mut self) -> State {
         let (system, t) = (self.system, self.t);
         let model = self.ida().equations();
         State::save(system, t, &model.values, model.playback.delays.past().clone())
     }
 
-    /// Work done so far; no seconds.
+    /// Counts of the work done so far. The seconds in it are not measured here.
     pub fn statistics(&mut self) -> Statistics {
         self.count_work();
         self.statistics
     }
 
-    /// Takes the warnings since the last time.
+    /// Removes and returns the warnings recorded since the last call.
     pub fn warnings(&mut self) -> Vec<Diagnostic> {
         std::mem::take(&mut self.diagnostics)
     }

@@ -1,58 +1,72 @@
-//! Bounds of functions over a stretch of time: of the value and of the slope. All are widened by more than their rounding.
+//! Interval arithmetic: bounds of a function and of its slope over a stretch of time.
+//!
+//! All bounds are widened by more than their rounding, so that they always contain the exact values. `tape` combines
+//! them operation by operation. Source: R. E. Moore, Interval Analysis (1966).
 
 use bramah_expr::{BinaryFunction, RelationalOp, UnaryFunction, math};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-/// Rounding of one operation, with room for functions of the C library.
+/// Relative widening of each operation; it covers the error of functions of the C library.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// All numbers from `lo` to `hi`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RealInterval {
+    /// Lower bound; may be minus infinity.
     pub lo: f64,
+    /// Upper bound; may be infinity.
     pub hi: f64,
 }
 
 impl RealInterval {
-    /// Nothing is known.
+    /// All numbers: nothing is known.
     pub const ALL: RealInterval = RealInterval { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+    /// The number 0.
     pub const ZERO: RealInterval = RealInterval::exactly(0.0);
 
+    /// One number.
     pub const fn exactly(x: f64) -> RealInterval {
         RealInterval { lo: x, hi: x }
     }
 
-    /// Between two computed ends.
+    /// The interval between two computed bounds, widened by their rounding.
     pub fn new(lo: f64, hi: f64) -> RealInterval {
         let (lo, hi) = (lo - ROUNDING * lo.abs(), hi + ROUNDING * hi.abs());
         // neither is known where infinities meet
         if lo <= hi { RealInterval { lo, hi } } else { RealInterval::ALL }
     }
 
+    /// Whether it contains one number only.
     pub fn is_point(self) -> bool {
         self.lo == self.hi
     }
 
+    /// Whether it contains 0.
     pub fn holds_zero(self) -> bool {
         self.lo <= 0.0 && self.hi >= 0.0
     }
 
+    /// The smallest interval that contains both.
     pub fn hull(self, other: RealInterval) -> RealInterval {
         RealInterval { lo: self.lo.min(other.lo), hi: self.hi.max(other.hi) }
     }
 
+    /// All values of `-x`.
     fn neg(self) -> RealInterval {
         RealInterval { lo: -self.hi, hi: -self.lo }
     }
 
+    /// All values of `x + y`.
     fn add(self, other: RealInterval) -> RealInterval {
         RealInterval::new(self.lo + other.lo, self.hi + other.hi)
     }
 
+    /// All values of `x - y`.
     pub fn sub(self, other: RealInterval) -> RealInterval {
         self.add(other.neg())
     }
 
+    /// All values of `x y`.
     pub fn mul(self, other: RealInterval) -> RealInterval {
         // nothing times an unknown number is nothing
         let product = |a: f64, b: f64| if a == 0.0 || b == 0.0 { 0.0 } else { a * b };
@@ -61,11 +75,12 @@ impl RealInterval {
         RealInterval::new(a.min(b).min(c).min(d), a.max(b).max(c).max(d))
     }
 
+    /// All values of `x / y`; nothing is known where `y` may be 0.
     fn div(self, other: RealInterval) -> RealInterval {
         if other.holds_zero() { RealInterval::ALL } else { self.mul(RealInterval::new(1.0 / other.hi, 1.0 / other.lo)) }
     }
 
-    /// By a function that grows.
+    /// All values of a function that grows. Outside its domain nothing is known.
     fn growing(self, f: impl Fn(f64) -> f64) -> RealInterval {
         let (lo, hi) = (f(self.lo), f(self.hi));
         RealInterval::new(
@@ -74,6 +89,7 @@ impl RealInterval {
         )
     }
 
+    /// All values of `|x|`.
     fn abs(self) -> RealInterval {
         match self {
             RealInterval { lo, .. } if lo >= 0.0 => self,
@@ -82,8 +98,10 @@ impl RealInterval {
         }
     }
 
+    /// All values of the sine.
     fn sin(self) -> RealInterval {
         let width = self.hi - self.lo;
+        // a whole period contains all values
         if width.is_nan() || width >= TAU {
             return RealInterval { lo: -1.0, hi: 1.0 };
         }
@@ -94,18 +112,19 @@ impl RealInterval {
         RealInterval { lo, hi }
     }
 
+    /// All values of the cosine.
     fn cos(self) -> RealInterval {
         self.add(RealInterval::exactly(FRAC_PI_2)).sin()
     }
 
-    /// Whether an angle or the same some turns on may lie within.
+    /// Whether an angle, or the same angle some turns away, may lie in the interval.
     fn meets(self, angle: f64) -> bool {
         let (from, to) = ((self.lo - angle) / TAU, (self.hi - angle) / TAU);
         let unsure = ROUNDING * (1.0 + from.abs().max(to.abs()));
         (from - unsure).ceil() <= to + unsure
     }
 
-    /// To a constant power.
+    /// All values of a constant power.
     fn power(self, n: f64) -> RealInterval {
         if n == 0.0 {
             return RealInterval::exactly(1.0);
@@ -114,6 +133,7 @@ impl RealInterval {
             return RealInterval::exactly(1.0).div(self.power(-n));
         }
         let whole = n.fract() == 0.0;
+        // even powers are not monotonic around 0, odd ones are
         if whole && n % 2.0 == 0.0 {
             self.abs().growing(|x| x.powf(n))
         } else if whole || self.lo >= 0.0 {
@@ -124,17 +144,20 @@ impl RealInterval {
     }
 }
 
-/// A function of time over a stretch: its values, and its slopes where it has one.
+/// Bounds of a function of time over a stretch of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IntervalEnclosure {
+    /// All values of the function.
     pub value: RealInterval,
-    /// All numbers where the function may jump.
+    /// All slopes; all numbers where the function may jump.
     pub slope: RealInterval,
 }
 
 impl IntervalEnclosure {
+    /// Nothing is known of the function.
     pub const UNKNOWN: IntervalEnclosure = IntervalEnclosure { value: RealInterval::ALL, slope: RealInterval::ALL };
 
+    /// A constant function.
     pub const fn constant(x: f64) -> IntervalEnclosure {
         IntervalEnclosure {
             value: if x.is_nan() { RealInterval::ALL } else { RealInterval::exactly(x) },
@@ -142,11 +165,12 @@ impl IntervalEnclosure {
         }
     }
 
-    /// Steps from one value to another.
+    /// A function that changes in steps: slope 0 where it is constant, unknown otherwise.
     fn steps(value: RealInterval) -> IntervalEnclosure {
         IntervalEnclosure { value, slope: if value.is_point() { RealInterval::ZERO } else { RealInterval::ALL } }
     }
 
+    /// Bounds of a function of one argument, with its slope by the chain rule.
     pub fn unary(op: UnaryFunction, a: IntervalEnclosure) -> IntervalEnclosure {
         let one = RealInterval::exactly(1.0);
         let (x, by) = (a.value, a.slope);
@@ -196,6 +220,7 @@ impl IntervalEnclosure {
         }
     }
 
+    /// Bounds of a function of two arguments, with the slope by the rules of differentiation.
     pub fn binary(op: BinaryFunction, a: IntervalEnclosure, b: IntervalEnclosure) -> IntervalEnclosure {
         let (x, y) = (a.value, b.value);
         match op {
@@ -232,13 +257,13 @@ impl IntervalEnclosure {
         }
     }
 
-    /// A value by itself, which is no product of two that vary each on its own.
+    /// Bounds of the square of a value. A product would treat the two factors as independent.
     pub fn square(a: IntervalEnclosure) -> IntervalEnclosure {
         let slope = RealInterval::exactly(2.0).mul(a.value).mul(a.slope);
         IntervalEnclosure { value: a.value.power(2.0), slope }
     }
 
-    /// A relation as it stands.
+    /// Bounds of a relation: 1, 0, or both where the intervals overlap.
     pub fn relation(rel: RelationalOp, a: IntervalEnclosure, b: IntervalEnclosure) -> IntervalEnclosure {
         let (x, y) = (a.value, b.value);
         let (below, above) = (x.hi < y.lo, x.lo > y.hi);
@@ -253,7 +278,7 @@ impl IntervalEnclosure {
         }
     }
 
-    /// One value or the other.
+    /// Bounds of `if condition then a else b`.
     pub fn choice(condition: IntervalEnclosure, a: IntervalEnclosure, b: IntervalEnclosure) -> IntervalEnclosure {
         match condition.value {
             RealInterval::ZERO => b,
@@ -262,10 +287,12 @@ impl IntervalEnclosure {
         }
     }
 
+    /// Bounds of a truth value that is always true, never true, or unknown.
     fn truth(always: bool, never: bool) -> IntervalEnclosure {
         IntervalEnclosure::steps(RealInterval { lo: math::truth(always), hi: math::truth(!never) })
     }
 
+    /// Bounds of the negated truth value.
     fn not(self) -> IntervalEnclosure {
         IntervalEnclosure {
             value: RealInterval { lo: 1.0 - self.value.hi, hi: 1.0 - self.value.lo },
@@ -273,15 +300,18 @@ impl IntervalEnclosure {
         }
     }
 
+    /// Bounds of the negative.
     fn neg(self) -> IntervalEnclosure {
         IntervalEnclosure { value: self.value.neg(), slope: self.slope.neg() }
     }
 
+    /// Bounds of the sign.
     fn sign(self) -> RealInterval {
         let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
         RealInterval { lo: sign(self.value.lo), hi: sign(self.value.hi) }
     }
 
+    /// Bounds of the larger of two values.
     fn max(self, other: IntervalEnclosure) -> IntervalEnclosure {
         let (x, y) = (self.value, other.value);
         match () {

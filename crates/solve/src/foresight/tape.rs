@@ -1,4 +1,7 @@
-//! Functions of time alone, written out in the order of evaluation: for a time, and in bounds over a stretch of time.
+//! Functions of time alone as a list of operations, evaluated at a time or as bounds over a stretch of time.
+//!
+//! [`TapeWriter`] follows the formulas of explicit variables from the sides of a relation. `foresight` evaluates the
+//! tape.
 
 use super::bounds::{IntervalEnclosure, RealInterval};
 use crate::lower::ExecutableSystem;
@@ -7,35 +10,45 @@ use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, FunctionId, Relationa
 use bramah_model::structure::{BltBlock, ExplicitAssignment, Unknown};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Longer functions and deeper ones are left to the integrator.
+/// Longer functions are left to the integrator.
 const MOST_STEPS: usize = 2000;
+/// Deeper expressions are left to the integrator.
 const DEEPEST: u32 = 500;
 
+/// One operation. Operands are indices of earlier operations.
 #[derive(Clone, Debug)]
 enum TapeOperation {
+    /// A number.
     Number(f64),
+    /// The time.
     Time,
-    /// What stands between events, by its place in `RelationTape::held`.
+    /// A value that is constant between events, by its index in `RelationTape::held`.
     Held(usize),
+    /// A function of one operand.
     Unary(UnaryFunction, usize),
+    /// A function of two operands.
     Binary(BinaryFunction, usize, usize),
+    /// A relation as it is: 1 or 0.
     Relation(RelationalOp, usize, usize),
+    /// Condition, and the values for true and false.
     Choice(usize, usize, usize),
+    /// A user function: number of the function, number of its output, arguments.
     Call(FunctionId, usize, Vec<usize>),
 }
 
-/// The difference of the sides of a relation that time alone changes between events.
+/// The difference of the sides of a relation that only time changes between events.
 #[derive(Clone, Debug)]
 pub struct RelationTape {
+    /// The operations; the last one is the result.
     steps: Vec<TapeOperation>,
     /// Slots of parameters and discrete values.
     pub held: Vec<usize>,
-    /// No step of it is without bounds.
+    /// Whether all operations have bounds.
     pub bounded: bool,
 }
 
 impl RelationTape {
-    /// The difference at a time.
+    /// The difference at time `t`.
     pub fn at(&self, functions: &[Function], held: &[f64], t: f64, scratch: &mut Vec<f64>) -> f64 {
         scratch.clear();
         for step in &self.steps {
@@ -61,7 +74,7 @@ impl RelationTape {
         scratch.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// The difference and its slope over a stretch of time.
+    /// Bounds of the difference and its slope over a stretch of time.
     pub fn over(&self, held: &[f64], time: RealInterval, scratch: &mut Vec<IntervalEnclosure>) -> IntervalEnclosure {
         scratch.clear();
         for step in &self.steps {
@@ -71,6 +84,7 @@ impl RelationTape {
                 TapeOperation::Time => IntervalEnclosure { value: time, slope: RealInterval::exactly(1.0) },
                 TapeOperation::Held(i) => IntervalEnclosure::constant(held[i]),
                 TapeOperation::Unary(op, a) => IntervalEnclosure::unary(op, of(a)),
+                // a square is bounded more narrowly than a product of two independent values
                 TapeOperation::Binary(BinaryFunction::Mul, a, b) if a == b => IntervalEnclosure::square(of(a)),
                 TapeOperation::Binary(op, a, b) => IntervalEnclosure::binary(op, of(a), of(b)),
                 TapeOperation::Relation(rel, a, b) => IntervalEnclosure::relation(rel, of(a), of(b)),
@@ -83,23 +97,25 @@ impl RelationTape {
     }
 }
 
-/// Writes tapes of one system.
+/// Writes the tapes of one system.
 pub struct TapeWriter<'a> {
+    /// The lowered model.
     system: &'a ExecutableSystem,
-    /// What blocks between events compute by one formula.
+    /// The definitions of explicit variables between events.
     formulas: FxHashMap<VarId, ExprId>,
-    /// What else moves between events.
+    /// All other variables that change between events.
     moving: FxHashSet<VarId>,
 }
 
 impl<'a> TapeWriter<'a> {
+    /// Sorts the variables of a system into formulas and moving ones.
     pub fn new(system: &'a ExecutableSystem) -> Self {
         let dae = &system.dae;
         let delayed = dae.delays.iter().map(|d| d.variable);
         let columns = system.columns.iter().map(|c| c.variable);
         let mut moving: FxHashSet<VarId> =
             dae.inputs.iter().chain(&dae.states).copied().chain(columns).chain(delayed).collect();
-        // parameters that an analysis has made states stand still
+        // parameters that an analysis has turned into states are constant
         let still = dae.continuous.iter().filter_map(|block| match block {
             BltBlock::Assign(ExplicitAssignment { unknown: Unknown::Der(v), value: Exprs::ZERO, .. }) => Some(v),
             _ => None,
@@ -124,7 +140,7 @@ impl<'a> TapeWriter<'a> {
         TapeWriter { system, formulas, moving }
     }
 
-    /// The difference of two expressions; `None` where more than time moves them.
+    /// The difference of two expressions; `None` where it depends on more than time, or where it is too long.
     pub fn difference(&self, left: ExprId, right: ExprId) -> Option<RelationTape> {
         let tape = RelationTape { steps: Vec::new(), held: Vec::new(), bounded: true };
         let mut sheet = TapeDraft { writer: self, tape, places: FxHashMap::default() };
@@ -136,23 +152,28 @@ impl<'a> TapeWriter<'a> {
 
 /// A tape that is being written.
 struct TapeDraft<'a> {
+    /// Formulas and moving variables.
     writer: &'a TapeWriter<'a>,
+    /// The tape so far.
     tape: RelationTape,
+    /// The operation that computes each expression.
     places: FxHashMap<ExprId, usize>,
 }
 
 impl TapeDraft<'_> {
+    /// Appends an operation and returns its index; `None` when the tape is too long.
     fn step(&mut self, step: TapeOperation) -> Option<usize> {
         self.tape.steps.push(step);
         (self.tape.steps.len() < MOST_STEPS).then_some(self.tape.steps.len() - 1)
     }
 
+    /// Appends a value that is constant between events.
     fn held(&mut self, slot: usize) -> Option<usize> {
         self.tape.held.push(slot);
         self.step(TapeOperation::Held(self.tape.held.len() - 1))
     }
 
-    /// Where the value of an expression stands.
+    /// The operation that computes an expression; `None` where more than time changes it.
     fn place(&mut self, e: ExprId, depth: u32) -> Option<usize> {
         if let Some(&place) = self.places.get(&e) {
             return Some(place);
@@ -166,6 +187,7 @@ impl TapeDraft<'_> {
         let place = match dae.exprs.node(e) {
             ExprNode::Num(bits) => self.step(TapeOperation::Number(f64::from_bits(bits))),
             ExprNode::Time => self.step(TapeOperation::Time),
+            // states, inputs and unknowns of loops
             ExprNode::Var(v) if self.writer.moving.contains(&v) => None,
             ExprNode::Var(v) => match self.writer.formulas.get(&v) {
                 Some(&formula) => self.place(formula, depth),

@@ -1,5 +1,8 @@
-//! The C side: what SUNDIALS calls, and the shells of matrix and linear solver that point to our own. A panic inside a
-//! callback never unwinds through C: it is caught, IDA is told to stop, and the text is kept.
+//! The functions that SUNDIALS calls, and the shells of matrix and linear solver around our own.
+//!
+//! Each callback reads its `IdaContext` from the user-data pointer. A panic inside a callback must not unwind through
+//! C: it is caught, IDA receives -1 and stops, and the message is kept. Return codes: 0 is success, positive is
+//! recoverable (IDA tries a smaller step), negative is fatal. Source: IDAS user guide, user-supplied functions.
 
 #![allow(unsafe_code, reason = "functions called by SUNDIALS; each block states why it is sound")]
 
@@ -11,33 +14,45 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::ptr::null_mut;
 use sundials_sys as s;
 
-/// What the C side points to.
+/// What the callbacks need. It is owned by `Ida` and referenced by the C objects.
 pub(super) struct IdaContext<E> {
+    /// The equations to evaluate.
     pub equations: E,
+    /// Number of unknowns.
     pub n: usize,
+    /// Number of crossing functions.
     pub roots: usize,
+    /// Tolerances, from which the error weights are computed.
     pub tolerances: IntegratorTolerances,
+    /// Factors of the iteration matrix.
     pub lu: Lu,
+    /// The column without pivot in the last factorization; `None` when that succeeded.
     pub singular: Option<SingularMatrix>,
+    /// Evaluations of the residual since the last restart.
     pub residual_calls: u64,
+    /// Evaluations of the Jacobian since the last restart.
     pub jacobian_calls: u64,
+    /// Evaluations of the crossing functions since the last restart.
     pub crossing_calls: u64,
+    /// Whether the last evaluation gave a value that is not finite.
     pub non_finite: bool,
+    /// The message of a panic in a callback, until `Ida` takes it.
     pub panic: Option<String>,
 }
 
-/// The values of a vector.
+/// The values of a vector as a slice.
 ///
 /// # Safety
-/// `v` is a serial vector of `n` entries that outlives the slice, and no other slice of it is in use.
+/// `v` is a serial vector of `n` entries that outlives the slice. No other slice of it is in use.
 pub(super) unsafe fn slice<'a>(v: s::N_Vector, n: usize) -> &'a mut [f64] {
     // SAFETY: promised by the caller; serial vectors are contiguous
     unsafe { std::slice::from_raw_parts_mut(s::N_VGetArrayPointer(v), n) }
 }
 
-/// Runs a callback; a panic becomes the code -1 (IDA stops) and its text is kept.
+/// Runs a callback; a panic becomes the code -1, which makes IDA stop, and its message is kept.
 fn guarded<E>(context: &mut IdaContext<E>, run: impl FnOnce(&mut IdaContext<E>) -> c_int) -> c_int {
     match catch_unwind(AssertUnwindSafe(|| run(context))) {
+        // `AssertUnwindSafe`: after a panic IDA stops, and nothing but the message is read
         Ok(code) => code,
         Err(payload) => {
             let text = payload.downcast_ref::<String>().cloned();
@@ -48,11 +63,16 @@ fn guarded<E>(context: &mut IdaContext<E>, run: impl FnOnce(&mut IdaContext<E>) 
     }
 }
 
+/// Records whether the values are finite and returns IDA's code: 0, or 1 for a smaller step.
 fn code_of<E>(context: &mut IdaContext<E>, evaluation: EvaluationStatus) -> c_int {
     context.non_finite = evaluation == EvaluationStatus::Retry;
     c_int::from(context.non_finite)
 }
 
+/// The residual `F(t, y, y')` (IDAResFn).
+///
+/// # Safety
+/// Called by IDA with the context as `user` and with distinct serial vectors of n entries.
 pub(super) unsafe extern "C" fn on_residual<E: DaeEquations>(
     t: f64,
     y: s::N_Vector,
@@ -73,6 +93,10 @@ pub(super) unsafe extern "C" fn on_residual<E: DaeEquations>(
     })
 }
 
+/// The Jacobian `dF/dy + cj dF/dy'` into the values of our matrix (IDALsJacFn).
+///
+/// # Safety
+/// As `on_residual`; the matrix was made by `new_matrix`.
 #[allow(clippy::too_many_arguments, reason = "the signature of IDALsJacFn")]
 pub(super) unsafe extern "C" fn on_jacobian<E: DaeEquations>(
     t: f64,
@@ -99,6 +123,10 @@ pub(super) unsafe extern "C" fn on_jacobian<E: DaeEquations>(
     })
 }
 
+/// The residuals of the sensitivity equations, for `count` directions (IDASensResFn).
+///
+/// # Safety
+/// As `on_residual`; the arrays hold `count` distinct serial vectors each.
 #[allow(clippy::too_many_arguments, reason = "the signature of IDASensResFn")]
 pub(super) unsafe extern "C" fn on_tangents<E: DifferentiableEquations>(
     count: c_int,
@@ -122,6 +150,7 @@ pub(super) unsafe extern "C" fn on_tangents<E: DifferentiableEquations>(
     };
     let each = 0..usize::try_from(count).unwrap_or(0);
     guarded(context, |c| {
+        // the matrices are the same for all directions and are computed once
         let evaluation = c.equations.differentiate(t, y, yp);
         for k in each.take_while(|_| evaluation == EvaluationStatus::Done) {
             // SAFETY: three arrays of `count` distinct serial vectors of n entries
@@ -133,6 +162,10 @@ pub(super) unsafe extern "C" fn on_tangents<E: DifferentiableEquations>(
     })
 }
 
+/// The crossing functions (IDARootFn).
+///
+/// # Safety
+/// As `on_residual`; `g` has as many entries as were given to `IDARootInit`.
 pub(super) unsafe extern "C" fn on_crossings<E: DaeEquations>(
     t: f64,
     y: s::N_Vector,
@@ -153,6 +186,10 @@ pub(super) unsafe extern "C" fn on_crossings<E: DaeEquations>(
     })
 }
 
+/// The error weights `share / (relative * |y| + absolute)` (IDAEwtFn).
+///
+/// # Safety
+/// As `on_residual`.
 pub(super) unsafe extern "C" fn on_weights<E: DaeEquations>(
     y: s::N_Vector,
     w: s::N_Vector,
@@ -170,15 +207,17 @@ pub(super) unsafe extern "C" fn on_weights<E: DaeEquations>(
     0
 }
 
+/// Tells SUNDIALS that the matrix type is not one of its own.
 unsafe extern "C" fn matrix_id(_: s::SUNMatrix) -> s::SUNMatrix_ID {
     s::SUNMatrix_ID_SUNMATRIX_CUSTOM
 }
 
-/// IDA clears the matrix before each Jacobian; ours writes every entry, so nothing needs to be done.
+/// Does nothing: IDA clears the matrix before each Jacobian, and ours writes every entry.
 unsafe extern "C" fn matrix_zero(_: s::SUNMatrix) -> s::SUNErrCode {
     0
 }
 
+/// Frees the values and the shell of the matrix.
 unsafe extern "C" fn matrix_destroy(a: s::SUNMatrix) {
     if !a.is_null() {
         // SAFETY: the content was made by Box::into_raw in `new_matrix` and is dropped once
@@ -190,18 +229,22 @@ unsafe extern "C" fn matrix_destroy(a: s::SUNMatrix) {
     }
 }
 
+/// A direct solver. IDA then scales the correction by 2 / (1 + cj ratio) when cj has changed since the last setup.
 unsafe extern "C" fn solver_type(_: s::SUNLinearSolver) -> s::SUNLinearSolver_Type {
     s::SUNLinearSolver_Type_SUNLINEARSOLVER_DIRECT
 }
 
+/// Tells SUNDIALS that the solver is not one of its own.
 unsafe extern "C" fn solver_id(_: s::SUNLinearSolver) -> s::SUNLinearSolver_ID {
     s::SUNLinearSolver_ID_SUNLINEARSOLVER_CUSTOM
 }
 
+/// Does nothing: the context is complete when the solver is created.
 unsafe extern "C" fn solver_initialize(_: s::SUNLinearSolver) -> s::SUNErrCode {
     0
 }
 
+/// Factorizes the iteration matrix; returns 1 when it is singular.
 unsafe extern "C" fn solver_setup<E: DaeEquations>(ls: s::SUNLinearSolver, a: s::SUNMatrix) -> c_int {
     // SAFETY: the content is the context (owned by Ida); the matrix is ours
     let (context, val) = unsafe { (&mut *(*ls).content.cast::<IdaContext<E>>(), &*(*a).content.cast::<Vec<f64>>()) };
@@ -212,6 +255,7 @@ unsafe extern "C" fn solver_setup<E: DaeEquations>(ls: s::SUNLinearSolver, a: s:
     })
 }
 
+/// Solves with the factors: copies `b` to `x` and replaces `x` by the solution; returns 1 when it is not finite.
 unsafe extern "C" fn solver_solve<E: DaeEquations>(
     ls: s::SUNLinearSolver,
     _: s::SUNMatrix,
@@ -232,6 +276,7 @@ unsafe extern "C" fn solver_solve<E: DaeEquations>(
     guarded(context, |c| c_int::from(!c.lu.solve(x)))
 }
 
+/// Frees the shell of the solver. The context belongs to `Ida`.
 unsafe extern "C" fn solver_free(ls: s::SUNLinearSolver) -> s::SUNErrCode {
     if !ls.is_null() {
         // SAFETY: the content belongs to Ida, only the shell is freed
@@ -243,6 +288,7 @@ unsafe extern "C" fn solver_free(ls: s::SUNLinearSolver) -> s::SUNErrCode {
     0
 }
 
+/// A matrix shell with `nnz` values.
 pub(super) fn new_matrix(nnz: usize, context: s::SUNContext) -> s::SUNMatrix {
     // SAFETY: a fresh shell, filled before use
     unsafe {
@@ -257,6 +303,7 @@ pub(super) fn new_matrix(nnz: usize, context: s::SUNContext) -> s::SUNMatrix {
     }
 }
 
+/// A solver shell that points to the context.
 pub(super) fn new_solver<E: DaeEquations>(content: *mut IdaContext<E>, context: s::SUNContext) -> s::SUNLinearSolver {
     // SAFETY: a fresh shell, filled before use
     unsafe {
@@ -274,6 +321,7 @@ pub(super) fn new_solver<E: DaeEquations>(content: *mut IdaContext<E>, context: 
     }
 }
 
+/// A serial vector with these values. Long vectors get our own operations.
 pub(super) fn new_vector(values: &[f64], context: s::SUNContext) -> s::N_Vector {
     // SAFETY: a fresh vector of as many entries as are copied
     unsafe {

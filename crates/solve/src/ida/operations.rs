@@ -1,5 +1,8 @@
-//! What SUNDIALS does with long vectors, handed to [`crate::vectors`]: its own loops are built for any processor,
-//! and combine vectors one by one.
+//! Vector operations for SUNDIALS, carried out by [`crate::vectors`].
+//!
+//! SUNDIALS' own loops are compiled for the baseline processor and combine vectors one pair at a time. `install` puts
+//! these functions into the operation table of long vectors. The semantics are those of N_VLinearSum, N_VScale,
+//! N_VLinearCombination and N_VWrmsNorm of the SUNDIALS manual.
 
 #![allow(unsafe_code, reason = "functions called by SUNDIALS; each block states why it is sound")]
 
@@ -7,10 +10,10 @@ use crate::vectors;
 use std::os::raw::c_int;
 use sundials_sys as s;
 
-/// Most vectors in a combination: the integrator's past of order 5, and what it adds.
+/// Most vectors in one combination. IDA combines its past of order 5 and a few more.
 const MOST: usize = 16;
 
-/// Gives a serial vector, and all that are cloned from it, our operations.
+/// Gives a serial vector, and all vectors cloned from it, our operations.
 ///
 /// # Safety
 /// `v` is a serial vector that nothing else uses now.
@@ -23,7 +26,7 @@ pub(super) unsafe fn install(v: s::N_Vector) {
     table.nvwrmsnorm = Some(weighted_norm);
 }
 
-/// Where the values of a vector begin, and how many there are.
+/// Pointer to the values of a vector, and their number.
 ///
 /// # Safety
 /// `v` is a serial vector.
@@ -32,14 +35,17 @@ unsafe fn place(v: s::N_Vector) -> (*mut f64, usize) {
     unsafe { (s::N_VGetArrayPointer(v), s::N_VGetLength(v) as usize) }
 }
 
+/// `z = a x + b y`.
+///
 /// # Safety
-/// Called by SUNDIALS with serial vectors of one length, each the same as another or apart from it.
+/// Called by SUNDIALS with serial vectors of one length. Two of them are either the same vector or do not overlap.
 unsafe extern "C" fn linear_sum(a: f64, x: s::N_Vector, b: f64, y: s::N_Vector, z: s::N_Vector) {
     // SAFETY: promised; the vector written is never borrowed a second time
     unsafe {
         let ((x, n), (y, _), (z, _)) = (place(x), place(y), place(z));
         let read = |from: *mut f64| std::slice::from_raw_parts(from, n);
         let out = std::slice::from_raw_parts_mut(z, n);
+        // an operand that is also the result must not be borrowed twice
         match (x == z, y == z) {
             (false, false) => vectors::sum(a, read(x), b, read(y), out),
             (false, true) => vectors::add(a, read(x), b, out),
@@ -49,6 +55,8 @@ unsafe extern "C" fn linear_sum(a: f64, x: s::N_Vector, b: f64, y: s::N_Vector, 
     }
 }
 
+/// `z = a x`.
+///
 /// # Safety
 /// As [`linear_sum`].
 unsafe extern "C" fn scale(a: f64, x: s::N_Vector, z: s::N_Vector) {
@@ -64,8 +72,10 @@ unsafe extern "C" fn scale(a: f64, x: s::N_Vector, z: s::N_Vector) {
     }
 }
 
+/// `z = c[0] x[0] + c[1] x[1] + ...`; an error code when there are none or too many.
+///
 /// # Safety
-/// As [`linear_sum`]; there are `count` factors and vectors, and only the first of these may be `z`.
+/// As [`linear_sum`]; there are `count` factors and vectors. Only the first vector may be `z`.
 unsafe extern "C" fn linear_combination(count: c_int, c: *mut f64, x: *mut s::N_Vector, z: s::N_Vector) -> c_int {
     let count = count as usize;
     if count == 0 || count > MOST {
@@ -75,6 +85,7 @@ unsafe extern "C" fn linear_combination(count: c_int, c: *mut f64, x: *mut s::N_
     unsafe {
         let (out, n) = place(z);
         let factors = std::slice::from_raw_parts(c, count);
+        // an array on the stack: this runs at every step
         let mut all: [&[f64]; MOST] = [&[]; MOST];
         let onto = place(*x).0 == out;
         for k in usize::from(onto)..count {
@@ -90,6 +101,8 @@ unsafe extern "C" fn linear_combination(count: c_int, c: *mut f64, x: *mut s::N_
     s::SUN_SUCCESS as c_int
 }
 
+/// The root mean square of `x[i] w[i]`.
+///
 /// # Safety
 /// As [`linear_sum`].
 unsafe extern "C" fn weighted_norm(x: s::N_Vector, w: s::N_Vector) -> f64 {

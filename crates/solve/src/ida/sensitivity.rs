@@ -1,6 +1,8 @@
-//! Forward sensitivities by IDAS: after each step of the states one linear solve or two for each direction, with the
-//! same factorised matrix, under the same control of the step. Source: W. F. Feehery, J. E. Tolsma, P. I. Barton,
-//! Applied Numerical Mathematics 25 (1997) 41.
+//! Forward sensitivities by IDAS, with the staggered corrector.
+//!
+//! After the corrector of the states has converged, IDAS solves one or two linear systems for each direction with the
+//! factorized matrix of that step. Source: W. F. Feehery, J. E. Tolsma, P. I. Barton, Applied Numerical Mathematics 25
+//! (1997) 41. `driver/tangents` sets the sensitivities at the start and after events.
 
 #![allow(unsafe_code, reason = "calls into SUNDIALS; each block states why it is sound")]
 
@@ -10,11 +12,12 @@ use std::os::raw::c_int;
 use sundials_sys as s;
 
 impl<E: DifferentiableEquations> Ida<E> {
-    /// Carries sensitivities along from where the integrator starts: per direction values and rates, consistent with the
-    /// equations. Their errors count in the choice of steps where they are `controlled`.
+    /// Starts sensitivities at the present time: for each direction values and time derivatives, consistent with F.
+    ///
+    /// With `controlled`, their errors take part in the error test.
     ///
     /// # Errors
-    /// [`IdaFailure::Code`] when SUNDIALS refuses the input.
+    /// [`IdaFailure::Code`] when SUNDIALS rejects the input.
     pub fn begin_tangents(
         &mut self,
         values: &[Vec<f64>],
@@ -23,6 +26,7 @@ impl<E: DifferentiableEquations> Ida<E> {
     ) -> Result<(), IdaFailure> {
         let count = c_int::try_from(values.len()).expect("fewer than 2^31 directions");
         self.tangents.extend(values.iter().chain(rates).map(|v| new_vector(v, self.sundials)));
+        // IDAS wants two arrays of vectors: values and time derivatives
         let (first, second) = self.tangents.split_at_mut(values.len());
         // SAFETY: two arrays of `count` vectors that live as long as `self`; IDAS copies them
         unsafe {
@@ -33,10 +37,10 @@ impl<E: DifferentiableEquations> Ida<E> {
         }
     }
 
-    /// The same again after [`Ida::restart`].
+    /// Sets the sensitivities again after [`Ida::restart`].
     ///
     /// # Errors
-    /// As before.
+    /// [`IdaFailure::Code`] when SUNDIALS rejects the input.
     pub fn restart_tangents(&mut self, values: &[Vec<f64>], rates: &[Vec<f64>]) -> Result<(), IdaFailure> {
         for (vector, given) in self.tangents.iter().zip(values.iter().chain(rates)) {
             // SAFETY: the vectors are ours and not borrowed
@@ -47,8 +51,9 @@ impl<E: DifferentiableEquations> Ida<E> {
         unsafe { check(s::IDASensReInit(self.memory, s::IDA_STAGGERED, first.as_mut_ptr(), second.as_mut_ptr())) }
     }
 
-    /// The sensitivities (`order` 0) or their rates (1) at a time within the last step, into `out`, one entry a
-    /// direction; false where there are none.
+    /// Writes the sensitivities (`order` 0) or their time derivatives (`order` 1) at a time within the last step.
+    ///
+    /// `out` has one vector per direction. False when IDAS has none or when the time lies outside.
     pub fn tangents_at(&mut self, t: f64, order: u8, out: &mut [Vec<f64>]) -> bool {
         for (k, out) in (0..).zip(out) {
             // SAFETY: the scratch vector is ours; IDAS writes into it

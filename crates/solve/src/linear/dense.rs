@@ -1,22 +1,24 @@
-//! Dense LU with partial pivoting, one instance of the code for each size so that the loops have known bounds.
+//! Dense LU with partial pivoting. The code is instantiated for each size up to 24, so that loop bounds are constants.
+//!
+//! `Lu` uses it for small matrices. The matrix is stored by columns; L and U overwrite it.
 
 use super::{SingularMatrix, row_weights};
 use crate::lower::SparsityPattern;
 
-/// The largest size there is code for.
+/// The largest size for which there is code.
 pub const LARGEST: usize = 24;
 
-/// A dense factorisation of some fixed size.
+/// A dense factorization of some fixed size.
 pub trait DenseFactorization: Send + std::fmt::Debug {
-    /// Factorises the matrix with these entries of the pattern.
+    /// Factorizes the matrix with these entries, in the order of the pattern. `Err` when there is no pivot.
     fn factor(&mut self, val: &[f64]) -> Result<(), SingularMatrix>;
-    /// Replaces `b` by the solution; false when it is not finite.
+    /// Replaces `b` by the solution; false when the solution is not finite.
     fn solve(&mut self, b: &mut [f64]) -> bool;
-    /// Pattern of the matrix and sizes of its unknowns.
+    /// Pattern of the matrix and nominal values of its unknowns.
     fn shape(&self) -> (&SparsityPattern, &[f64]);
 }
 
-/// A factorisation for this pattern, if it is small enough.
+/// A factorization for this pattern; `None` when the matrix is larger than [`LARGEST`].
 pub fn new(pattern: &SparsityPattern, column_scale: &[f64]) -> Option<Box<dyn DenseFactorization>> {
     macro_rules! sizes {
         ($($n:literal)*) => {
@@ -26,20 +28,25 @@ pub fn new(pattern: &SparsityPattern, column_scale: &[f64]) -> Option<Box<dyn De
     sizes!(1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24)
 }
 
-/// The factors, column by column: below the diagonal L, on and above it U.
+/// The factors of an N x N matrix.
 #[derive(Debug)]
 struct FixedSizeLu<const N: usize> {
+    /// Pattern of the matrix.
     pattern: SparsityPattern,
+    /// Nominal value of each unknown.
     column_scale: Vec<f64>,
+    /// The factors by columns: L below the diagonal, U on and above it.
     a: [[f64; N]; N],
     /// Reciprocal pivots.
     inverse: [f64; N],
     /// Row of the matrix that became pivot row `i`.
     row: [usize; N],
+    /// Row weights, in the present order of rows.
     weights: [f64; N],
 }
 
 impl<const N: usize> FixedSizeLu<N> {
+    /// Zero factors for a pattern of N columns, with the nominal values of the unknowns.
     fn new(pattern: &SparsityPattern, column_scale: &[f64]) -> Self {
         FixedSizeLu {
             pattern: pattern.clone(),
@@ -51,6 +58,7 @@ impl<const N: usize> FixedSizeLu<N> {
         }
     }
 
+    /// Writes the entries into the dense matrix.
     fn load(&mut self, val: &[f64]) {
         self.a = [[0.0; N]; N];
         for j in 0..N {
@@ -60,11 +68,12 @@ impl<const N: usize> FixedSizeLu<N> {
         }
     }
 
-    /// The row below (or at) `j` whose weighed entry in column `j` is largest.
+    /// The row at or below `j` with the largest weighed entry in column `j`; `None` when there is no usable one.
     fn pivot(&self, j: usize) -> Option<usize> {
         let mut best = (0.0, j);
         for i in j..N {
             let v = self.a[j][i].abs() * self.weights[i];
+            // NaN is taken on purpose: the result is then refused as not finite
             if v > best.0 || v.is_nan() {
                 best = (v, i);
             }
@@ -72,6 +81,7 @@ impl<const N: usize> FixedSizeLu<N> {
         (best.0 > 0.0 && best.0.is_finite()).then_some(best.1)
     }
 
+    /// Exchanges two rows with their weights and records the permutation.
     fn swap_rows(&mut self, i: usize, j: usize) {
         if i != j {
             for column in &mut self.a {
@@ -82,6 +92,9 @@ impl<const N: usize> FixedSizeLu<N> {
         }
     }
 
+    /// Divides column `j` below the pivot and updates all columns to its right.
+    ///
+    /// Multipliers that are zero cost nothing.
     fn eliminate(&mut self, j: usize) {
         let inverse = 1.0 / self.a[j][j];
         self.inverse[j] = inverse;
@@ -102,6 +115,7 @@ impl<const N: usize> FixedSizeLu<N> {
 }
 
 impl<const N: usize> DenseFactorization for FixedSizeLu<N> {
+    // right-looking elimination: pivot, exchange, update of the rest
     fn factor(&mut self, val: &[f64]) -> Result<(), SingularMatrix> {
         self.load(val);
         row_weights(&self.pattern, val, &self.column_scale, &mut self.weights);
@@ -120,6 +134,7 @@ impl<const N: usize> DenseFactorization for FixedSizeLu<N> {
     }
 
     fn solve(&mut self, b: &mut [f64]) -> bool {
+        // forward substitution with L in the pivot order, then back substitution with U
         let mut x = [0.0; N];
         for i in 0..N {
             x[i] = b[self.row[i]];

@@ -1,5 +1,9 @@
-//! Sparse LU after Gilbert and Peierls: the first factorisation chooses pivots and records the patterns of L and U,
-//! later ones only redo the arithmetic, as long as the pivots stay good.
+//! Sparse LU by Gilbert and Peierls, with refactorization on a recorded pattern.
+//!
+//! The first factorization searches pivots and records the patterns of L and U. Later factorizations repeat only the
+//! arithmetic, as long as the recorded pivots are good enough; otherwise pivots are searched again. Columns are ordered
+//! by COLAMD. Source: J. R. Gilbert, T. Peierls, SIAM J. Sci. Stat. Comput. 9 (1988) 862; the idea of refactorization
+//! is that of KLU (T. A. Davis, E. Palamadai Natarajan, ACM TOMS 37 (2010) 36).
 
 use super::{SingularMatrix, row_weights};
 use crate::lower::SparsityPattern;
@@ -7,53 +11,69 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::colamd;
 
+/// No row or position.
 const NONE: u32 = u32::MAX;
-/// The diagonal entry is taken while it is not smaller than this part of the best one: it keeps the fill low.
+/// The diagonal entry is chosen as pivot while it is at least this part of the best one. This keeps the fill low.
 const DIAGONAL_PREFERENCE: f64 = 1e-3;
-/// A multiplier beyond this (in weighed rows) means that the recorded pivots have gone bad.
+/// A multiplier above this, in weighed rows, makes a recorded pivot unusable.
 const LARGEST_MULTIPLIER: f64 = 1e6;
-/// A pivot below this part of the largest entry of its row is what rounding has left of a column that depends on others.
+/// A pivot below this part of the largest entry of its row is rounding error of a dependent column.
 const DEPENDENT: f64 = 1e-12;
 
-/// Sparse LU factors with a fixed column order and pivots that change only when they must.
+/// Sparse LU factors of an n x n matrix, with a column order that is fixed except for kept columns.
 #[derive(Debug)]
 pub struct SparseLu {
+    /// Pattern of the matrix.
     pattern: SparsityPattern,
+    /// Nominal value of each unknown, by column.
     column_scale: Vec<f64>,
     /// Column of the matrix at each position of the elimination.
     order: Vec<u32>,
-    /// Position at which each row is pivot row.
+    /// Position at which each row is the pivot row; `NONE` while it is not chosen.
     position: Vec<u32>,
     /// Pivot row at each position.
     pivot_row: Vec<u32>,
+    /// L without its unit diagonal. Indices are rows during the pivot search, positions afterwards.
     lower: SparseFactor,
+    /// U without its diagonal. Indices are positions.
     upper: SparseFactor,
+    /// Reciprocal pivots by position.
     inverse: Vec<f64>,
-    /// The matrix entries in elimination order: position of the row, and index into the values.
+    /// For each position, where its matrix entries begin in `load_row` and `load_from`; n + 1 entries.
     load_ptr: Vec<u32>,
+    /// Position of the row of each matrix entry.
     load_row: Vec<u32>,
+    /// Index of each matrix entry in the array of values.
     load_from: Vec<u32>,
-    /// Row weights, by row while pivots are searched, then by position.
+    /// Row weights: by row while pivots are searched, by position afterwards.
     weights: Vec<f64>,
+    /// The dense column in work. All zero between columns.
     x: Vec<f64>,
+    /// The right-hand side in work.
     work: Vec<f64>,
+    /// Workspace of the depth-first search.
     search: DepthFirstScratch,
+    /// Whether recorded pivots exist.
     ready: bool,
-    /// Whether columns without a usable pivot are kept.
+    /// Whether columns without a usable pivot are kept instead of failing.
     keeping: bool,
-    /// How many are, the last ones in `order`.
+    /// Number of kept columns. They are the last ones in `order`.
     kept: usize,
 }
 
-/// Columns of L (without the unit diagonal) or U (without the diagonal).
+/// The columns of one factor, compressed.
 #[derive(Debug, Default)]
 struct SparseFactor {
+    /// Start of each column in `idx` and `val`, and the end of the last one.
     ptr: Vec<u32>,
+    /// Row or position of each entry.
     idx: Vec<u32>,
+    /// Value of each entry.
     val: Vec<f64>,
 }
 
 impl SparseFactor {
+    /// Removes all columns.
     fn clear(&mut self) {
         self.ptr.clear();
         self.ptr.push(0);
@@ -61,37 +81,43 @@ impl SparseFactor {
         self.val.clear();
     }
 
+    /// Adds an entry to the open column.
     fn push(&mut self, index: u32, value: f64) {
         self.idx.push(index);
         self.val.push(value);
     }
 
+    /// Ends the open column.
     fn close_column(&mut self) {
         self.ptr.push(count(self.idx.len()));
     }
 
+    /// The entries of column `j`.
     fn range(&self, j: usize) -> std::ops::Range<usize> {
         self.ptr[j] as usize..self.ptr[j + 1] as usize
     }
 }
 
-/// Scratch space of the depth-first search.
+/// Workspace of the depth-first search that finds the pattern of a column.
 #[derive(Debug, Default)]
 struct DepthFirstScratch {
+    /// For each row the position of the column that visited it last.
     mark: Vec<u32>,
+    /// Rows on the path, each with the number of entries visited in its L column.
     stack: Vec<(u32, u32)>,
     /// Positions whose L columns update the current column, in post-order.
     updates: Vec<u32>,
-    /// Rows that may become pivot.
+    /// Rows of the column that are not pivot rows yet.
     rows: Vec<u32>,
 }
 
+/// A size as `u32`, which halves the memory of the indices.
 fn count(n: usize) -> u32 {
     u32::try_from(n).expect("fewer than 2^32 entries")
 }
 
 impl SparseLu {
-    /// Orders the columns; the first factorisation chooses the pivots.
+    /// Orders the columns. The first factorization searches the pivots.
     pub fn new(pattern: &SparsityPattern, column_scale: &[f64]) -> Self {
         let n = pattern.n;
         SparseLu {
@@ -116,28 +142,30 @@ impl SparseLu {
         }
     }
 
-    /// The same, where a column without a usable pivot gets one of the size of a row that is left over: as long as that
-    /// row holds, its unknown stays as it is.
+    /// As [`SparseLu::new`], but a column without a usable pivot gets an artificial one.
+    ///
+    /// The pivot has the size of a row that no other column needed. As long as that row holds, the unknown stays as it
+    /// is.
     pub fn keeping(pattern: &SparsityPattern, column_scale: &[f64]) -> Self {
         SparseLu { keeping: true, ..Self::new(pattern, column_scale) }
     }
 
-    /// Pattern of the matrix and sizes of its unknowns.
+    /// Pattern of the matrix and nominal values of its unknowns.
     pub fn shape(&self) -> (&SparsityPattern, &[f64]) {
         (&self.pattern, &self.column_scale)
     }
 
-    /// How many unknowns the last factorisation keeps.
+    /// Number of unknowns that the last factorization keeps.
     pub fn kept(&self) -> usize {
         self.kept
     }
 
-    /// Entries of both factors.
+    /// Number of entries of both factors, diagonals counted once.
     pub fn nnz(&self) -> usize {
         self.lower.idx.len() + self.upper.idx.len() + self.pattern.n
     }
 
-    /// Factorises; true when pivots were searched for.
+    /// Factorizes the matrix with these entries; true when pivots were searched.
     ///
     /// # Errors
     /// [`SingularMatrix`] when there is no usable pivot.
@@ -146,8 +174,10 @@ impl SparseLu {
             return Ok(false);
         }
         self.ready = false;
+        // a refactorization that stopped midway may have left entries in the column
         self.x.fill(0.0);
         self.kept = 0;
+        // each failure names one dependent column: it moves to the end, and the search begins again
         while let Err(singular) = self.search_pivots(val) {
             if !self.keeping || self.kept == self.pattern.n || !val.iter().all(|v| v.is_finite()) {
                 return Err(singular);
@@ -158,13 +188,14 @@ impl SparseLu {
         Ok(true)
     }
 
-    /// Moves a column behind all others, among those that are kept.
+    /// Moves a column to the end of the order, where the kept columns stand.
     fn postpone(&mut self, column: usize) {
         let at = self.order.iter().position(|&c| c as usize == column).expect("a column of the matrix");
         self.order[at..].rotate_left(1);
         self.kept += 1;
     }
 
+    /// The first factorization: finds pattern and pivots column by column.
     fn search_pivots(&mut self, val: &[f64]) -> Result<(), SingularMatrix> {
         let n = self.pattern.n;
         row_weights(&self.pattern, val, &self.column_scale, &mut self.weights);
@@ -174,6 +205,7 @@ impl SparseLu {
         self.search.mark.clear();
         self.search.mark.resize(n, NONE);
         for j in 0..n {
+            // symbolic step, numeric step, pivot: the left-looking algorithm
             self.reach(j);
             self.update_column(j, val);
             self.choose_pivot(j)?;
@@ -183,6 +215,9 @@ impl SparseLu {
     }
 
     /// Finds which earlier columns update column `j` and which rows it fills.
+    ///
+    /// These are the nodes that can be reached from the entries of the column in the graph of L. The effort is
+    /// proportional to the number of operations, not to n.
     fn reach(&mut self, j: usize) {
         let column = self.order[j] as usize;
         let (s, mark) = (&mut self.search, count(j));
@@ -198,11 +233,15 @@ impl SparseLu {
         }
     }
 
+    /// Computes column `j` of U, and the rest of the column for L, in the dense vector `x`.
+    ///
+    /// It subtracts each earlier column of L that reaches this one, times the entry of U.
     fn update_column(&mut self, j: usize, val: &[f64]) {
         let column = self.order[j] as usize;
         for p in self.pattern.colptr[column]..self.pattern.colptr[column + 1] {
             self.x[self.pattern.rowidx[p]] += val[p];
         }
+        // reverse post-order is a topological order of the updates
         for &k in self.search.updates.iter().rev() {
             let u = std::mem::take(&mut self.x[self.pivot_row[k as usize] as usize]);
             self.upper.push(k, u);
@@ -213,6 +252,7 @@ impl SparseLu {
         self.upper.close_column();
     }
 
+    /// Chooses the pivot of column `j` and divides the rest of the column by it.
     fn choose_pivot(&mut self, j: usize) -> Result<(), SingularMatrix> {
         if j >= self.pattern.n - self.kept {
             self.keep(j);
@@ -225,6 +265,7 @@ impl SparseLu {
         self.position[row as usize] = count(j);
         self.pivot_row[j] = row;
         for &r in &self.search.rows {
+            // taking the values leaves the dense column zero for the next one
             let v = std::mem::take(&mut self.x[r as usize]);
             if r != row {
                 self.lower.push(r, v / pivot);
@@ -234,7 +275,7 @@ impl SparseLu {
         if self.inverse[j].is_finite() { Ok(()) } else { Err(self.give_up(column)) }
     }
 
-    /// The pivot of a column that is kept, in a row that none of the others needed.
+    /// Gives a kept column an artificial pivot, in a row that no other column needed.
     fn keep(&mut self, j: usize) {
         let row = self.position.iter().position(|&p| p == NONE).expect("as many rows as columns");
         for &r in &self.search.rows {
@@ -246,12 +287,15 @@ impl SparseLu {
         self.lower.close_column();
     }
 
-    /// In units of row and column the pivot is 1.
+    /// The reciprocal of an artificial pivot, which is 1 in units of its row and column.
     fn inverse_of_kept(&self, j: usize, row_weight: f64) -> f64 {
         let weight = if row_weight > 0.0 { row_weight } else { 1.0 };
         weight * self.column_scale[self.order[j] as usize]
     }
 
+    /// The pivot row of a column: the diagonal where it is large enough, else the largest weighed entry.
+    ///
+    /// Row `column` counts as the diagonal. `None` when no entry is usable, or when one is NaN.
     fn best_row(&self, column: u32) -> Option<u32> {
         let weighed = |r: u32| self.x[r as usize].abs() * self.weights[r as usize];
         let mut best = (0.0, NONE);
@@ -272,12 +316,13 @@ impl SparseLu {
         Some(if diagonal { column } else { best.1 })
     }
 
+    /// Clears the dense column and names the column without a pivot.
     fn give_up(&mut self, column: u32) -> SingularMatrix {
         self.x.fill(0.0);
         SingularMatrix { column: column as usize }
     }
 
-    /// Rows become positions, so that refactorisation and solution need no permutation inside.
+    /// Replaces rows by positions, so that refactorization and solution need no permutation inside.
     fn renumber(&mut self) {
         for r in &mut self.lower.idx {
             *r = self.position[*r as usize];
@@ -299,12 +344,15 @@ impl SparseLu {
         }
     }
 
-    /// The arithmetic alone; false when a pivot has gone bad.
+    /// Repeats the arithmetic with the recorded pivots and pattern.
+    ///
+    /// False when a pivot is no longer usable; the factors are then incomplete, and pivots must be searched again.
     fn refactor(&mut self, val: &[f64]) -> bool {
         for j in 0..self.pattern.n {
             for p in self.load_ptr[j] as usize..self.load_ptr[j + 1] as usize {
                 self.x[self.load_row[p] as usize] += val[self.load_from[p] as usize];
             }
+            // the stored order of U is the topological order of the pivot search
             for t in self.upper.range(j) {
                 let k = self.upper.idx[t] as usize;
                 let u = std::mem::take(&mut self.x[k]);
@@ -321,12 +369,15 @@ impl SparseLu {
         true
     }
 
+    /// Divides column `j` by its recorded pivot.
+    ///
+    /// False when the pivot is too small against the rest of its column, or when a kept column has become independent.
     fn divide(&mut self, j: usize) -> bool {
         let pivot = std::mem::take(&mut self.x[j]);
         let scale = self.column_scale[self.order[j] as usize];
         if j >= self.pattern.n - self.kept {
             self.inverse[j] = self.inverse_of_kept(j, self.weights[j]);
-            // no other rows are left but those of columns that are kept too; one without entries has no size
+            // a kept column must still be dependent: only rounding error may be left in the remaining rows
             let rests = |v: f64, w: f64| v == 0.0 || (w > 0.0 && v.abs() * w * scale <= DEPENDENT);
             let open =
                 rests(pivot, self.weights[j]) && self.x[j..].iter().zip(&self.weights[j..]).all(|(&v, &w)| rests(v, w));
@@ -334,6 +385,7 @@ impl SparseLu {
             return open;
         }
         let inverse = 1.0 / pivot;
+        // a large multiplier means loss of accuracy, so the pivots are searched again
         let bound = LARGEST_MULTIPLIER * pivot.abs() * self.weights[j];
         let mut largest = 0.0_f64;
         for t in self.lower.range(j) {
@@ -347,14 +399,18 @@ impl SparseLu {
         inverse.is_finite() && largest <= bound && pivot.abs() * self.weights[j] * scale >= least
     }
 
-    /// Replaces `b` by the solution; false when it is not finite.
+    /// Replaces `b` by the solution of A x = b; false when the solution is not finite.
+    ///
+    /// `b` is indexed by rows on entry and by columns on return.
     pub fn solve(&mut self, b: &mut [f64]) -> bool {
         let (n, w) = (self.pattern.n, &mut self.work);
         for j in 0..n {
+            // row permutation
             w[j] = b[self.pivot_row[j] as usize];
         }
         for j in 0..n {
             let v = w[j];
+            // a zero in the right-hand side needs no column of L
             if v != 0.0 {
                 let range = self.lower.range(j);
                 for (&i, &l) in self.lower.idx[range.clone()].iter().zip(&self.lower.val[range]) {
@@ -363,6 +419,7 @@ impl SparseLu {
             }
         }
         let mut finite = true;
+        // U is stored by columns, so the substitution goes column by column from the last one
         for j in (0..n).rev() {
             let v = w[j] * self.inverse[j];
             finite &= v.is_finite();
@@ -377,10 +434,11 @@ impl SparseLu {
 }
 
 impl DepthFirstScratch {
-    /// Depth first through the columns of L from the row on the stack.
+    /// Visits the columns of L that can be reached from the row on the stack, without recursion.
     fn descend(&mut self, mark: u32, position: &[u32], lower: &SparseFactor) {
         while let Some((row, next)) = self.stack.last_mut() {
             let at = position[*row as usize];
+            // not a pivot row yet: the search ends here, and the row is a candidate for the pivot
             if at == NONE {
                 self.rows.push(*row);
                 self.stack.pop();
@@ -408,7 +466,7 @@ impl DepthFirstScratch {
     }
 }
 
-/// COLAMD by faer; the given order should that fail.
+/// The column order of COLAMD (from `faer`), or the given order should that fail.
 fn column_order(pattern: &SparsityPattern) -> Vec<u32> {
     let n = pattern.n;
     let matrix = SymbolicSparseColMatRef::new_unsorted_checked(n, n, &pattern.colptr, None, &pattern.rowidx);

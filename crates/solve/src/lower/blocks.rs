@@ -1,4 +1,7 @@
-//! The event and initial systems: blocks with their programs.
+//! Definitions and programs of the event system and the initial system.
+//!
+//! The sorted blocks of the DAE enter. [`BlockDrafter`] turns them into drafts, which hold kernel definitions;
+//! [`assemble`] makes the programs of [`BlockCode`] from the drafts once all slots are known.
 
 use super::jacobian::{Differentials, JacobianEntry, compress};
 use super::layout::{ValueSlot, slot};
@@ -9,7 +12,7 @@ use bramah_expr::{ExprId, VarId};
 use bramah_model::structure::{AlgebraicLoop, BltBlock, ExplicitAssignment, Unknown};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Blocks whose definitions are made and whose programs are not: programs need the slots of all of them.
+/// A block whose definitions are made but whose programs are not, because programs need the slots of all blocks.
 #[derive(Debug)]
 pub enum BlockDraft {
     /// Neighbouring explicit assignments.
@@ -20,38 +23,50 @@ pub enum BlockDraft {
     Mixed { continuous: Vec<BlockDraft>, discrete: Vec<AssignDraft> },
 }
 
-/// Explicit assignments: either modes of crossings, none of which reads another, or no modes at all; and either all
-/// moved by `pre` values or none.
+/// Explicit assignments that become one program.
+///
+/// They are either all modes of crossings, none of which reads another, or contain no modes. Either all depend on `pre`
+/// values or none does.
 #[derive(Debug, Default)]
 pub struct AssignDraft {
+    /// Whether they are modes.
     modes: bool,
+    /// Whether they depend on `pre` values.
     moved: bool,
+    /// What is computed, in order.
     targets: Vec<AssignTarget>,
+    /// Slots of the targets.
     slots: FxHashSet<ValueSlot>,
+    /// Their definitions.
     defs: KernelDefinitions,
 }
 
 /// An algebraic loop with the definitions of its residual and of its matrix.
 #[derive(Debug)]
 pub struct LoopDraft {
+    /// The loop, with empty programs.
     code: LoopCode,
+    /// Definitions of inner variables and residuals.
     residual: KernelDefinitions,
+    /// Definitions of inner variables and derivatives.
     jacobian: Differentials,
 }
 
-/// Makes the definitions of sorted systems.
+/// Makes the drafts of one sorted system.
 pub struct BlockDrafter<'s, 'a> {
+    /// Turns expressions into kernels.
     shaper: &'s mut KernelShaper<'a>,
+    /// How expressions are treated: `homotopy` is kept in the initial system only.
     rules: ShapingRules<'s>,
     /// The modes of crossings.
     modes: &'s FxHashSet<VarId>,
-    /// Slots whose values `pre` values reach: they may move from pass to pass of an event iteration, all others keep
-    /// the values of its first pass. Nobody asks at the start.
+    /// Slots that depend on `pre` values. They may change from pass to pass of an event iteration, all others keep the
+    /// values of its first pass. Empty for the initial system, which has no passes.
     moved: FxHashSet<ValueSlot>,
 }
 
 impl<'s, 'a> BlockDrafter<'s, 'a> {
-    /// Definitions for this shaper. `inline` is an empty map.
+    /// A drafter for the event system, or for the `initial` one. `inline` is an empty map.
     pub fn new(
         shaper: &'s mut KernelShaper<'a>,
         initial: bool,
@@ -62,14 +77,17 @@ impl<'s, 'a> BlockDrafter<'s, 'a> {
         BlockDrafter { shaper, rules: ShapingRules { initial, inline, hoist: true }, modes, moved }
     }
 
-    /// The definitions of a sorted system. Of neighbouring assignments those come first that stay through an event
-    /// iteration, so that its later passes need not run them.
+    /// The drafts of a sorted system, in order.
+    ///
+    /// Among neighbouring assignments, those that stay constant through an event iteration come first, so that its
+    /// later passes need not run them.
     pub fn blocks(&mut self, blocks: &[BltBlock]) -> Vec<BlockDraft> {
         let mut drafts: Vec<BlockDraft> = Vec::new();
         let mut later: Vec<(AssignTarget, KernelExpression)> = Vec::new();
         for block in blocks {
             if let BltBlock::Assign(assign) = block {
                 let (target, shaped) = self.assign(assign);
+                // placed behind the assignments that stay constant, up to the next loop
                 if self.moves(&shaped.inputs) {
                     self.moved.insert(slot(target.slot));
                     later.push((target, shaped));
@@ -78,6 +96,7 @@ impl<'s, 'a> BlockDrafter<'s, 'a> {
                 }
                 continue;
             }
+            // a loop reads the assignments before it, so the delayed ones must be placed now
             for (target, shaped) in later.drain(..) {
                 self.join(&mut drafts, true, target, &shaped);
             }
@@ -98,7 +117,7 @@ impl<'s, 'a> BlockDrafter<'s, 'a> {
         drafts
     }
 
-    /// Adds an assignment to the last run if that takes it, else to a new one.
+    /// Adds an assignment to the last draft if that accepts it, else to a new one.
     fn join(&mut self, drafts: &mut Vec<BlockDraft>, moved: bool, target: AssignTarget, shaped: &KernelExpression) {
         let modes = self.is_mode(target.unknown);
         if !matches!(drafts.last(), Some(BlockDraft::Assign(run)) if run.moved == moved && run.takes(modes, shaped)) {
@@ -109,11 +128,12 @@ impl<'s, 'a> BlockDrafter<'s, 'a> {
         }
     }
 
+    /// Whether an input depends on `pre` values.
     fn moves(&self, inputs: &[ValueSlot]) -> bool {
         !self.moved.is_empty() && inputs.iter().any(|input| self.moved.contains(input))
     }
 
-    /// Notes what a loop passes on; of loops through discrete equations all moves.
+    /// Notes the slots that a loop computes from `pre` values. Mixed loops always count as depending on them.
     fn follow(&mut self, draft: &BlockDraft) {
         match draft {
             BlockDraft::Loop(l) if !self.moves(l.residual.slots()) => {}
@@ -123,6 +143,7 @@ impl<'s, 'a> BlockDrafter<'s, 'a> {
         }
     }
 
+    /// The drafts of the discrete equations of a mixed loop, in their given order.
     fn discrete(&mut self, assigns: &[ExplicitAssignment]) -> Vec<AssignDraft> {
         let mut runs: Vec<AssignDraft> = Vec::new();
         for assign in assigns {
@@ -140,17 +161,19 @@ impl<'s, 'a> BlockDrafter<'s, 'a> {
         runs
     }
 
+    /// Whether an unknown is the mode of a crossing.
     fn is_mode(&self, unknown: Unknown) -> bool {
         matches!(unknown, Unknown::Var(v) if self.modes.contains(&v))
     }
 
+    /// Target and kernel of an explicit assignment.
     fn assign(&mut self, assign: &ExplicitAssignment) -> (AssignTarget, KernelExpression) {
         (target(assign, self.shaper), self.shaper.shape(assign.value, &self.rules))
     }
 }
 
 impl BlockDraft {
-    /// Calls `visit` for the slot of every unknown.
+    /// Calls `visit` for the slot of every unknown of the block.
     fn computes(&self, visit: &mut impl FnMut(ValueSlot)) {
         match self {
             BlockDraft::Assign(run) => run.targets.iter().for_each(|t| visit(slot(t.slot))),
@@ -167,38 +190,44 @@ impl BlockDraft {
 }
 
 impl AssignDraft {
-    /// Whether an assignment may join.
+    /// Whether an assignment may join: of the same kind, and if it is a mode, without reading a mode of this draft.
     fn takes(&self, modes: bool, shaped: &KernelExpression) -> bool {
         self.modes == modes && !(modes && shaped.inputs.iter().any(|input| self.slots.contains(input)))
     }
 
+    /// Adds an assignment.
     fn add(&mut self, target: AssignTarget, shaped: &KernelExpression, shaper: &mut KernelShaper) {
         self.defs.define(&mut shaper.kernels, slot(target.slot), shaped);
         self.slots.insert(slot(target.slot));
         self.targets.push(target);
     }
 
+    /// Makes the program.
     fn assemble(self, order: DefinitionOrder, assembler: &mut ProgramAssembler) -> AssignCode {
         AssignCode { program: assembler.assemble(&self.defs, order, None), targets: self.targets }
     }
 }
 
+/// The target of an explicit assignment.
 fn target(assign: &ExplicitAssignment, shaper: &KernelShaper) -> AssignTarget {
     let &ExplicitAssignment { unknown, value, equation } = assign;
     AssignTarget { unknown, slot: shaper.layout.unknown(unknown), equation, value }
 }
 
+/// The draft of an algebraic loop.
 fn draft_loop(l: &AlgebraicLoop, rules: &ShapingRules, shaper: &mut KernelShaper) -> LoopDraft {
     let one = shaper.layout.number(1.0);
     let mut residual = KernelDefinitions::default();
     let mut jacobian = Differentials::default();
     let tearing_slots: Vec<usize> = l.tearing.iter().map(|&unknown| shaper.layout.unknown(unknown)).collect();
     for (column, &tearing) in (0..).zip(&tearing_slots) {
+        // the derivative of a tearing unknown with respect to itself is 1
         jacobian.seed(slot(tearing), column, one);
     }
     let inner: Vec<AssignTarget> = l.inner.iter().map(|assign| target(assign, shaper)).collect();
     let first = shaper.layout.work(l.residuals.len());
     let residual_slots: Vec<usize> = (0..l.residuals.len()).map(|k| first as usize + k).collect();
+    // inner variables are read by later definitions, residuals by nobody
     let definitions = inner.iter().map(|t| (t.value, t.slot, true));
     let residuals = l.residuals.iter().zip(&residual_slots).map(|(&(e, _), &place)| (e, place, false));
     for (value, place, is_read) in definitions.chain(residuals) {
@@ -222,6 +251,7 @@ fn draft_loop(l: &AlgebraicLoop, rules: &ShapingRules, shaper: &mut KernelShaper
     LoopDraft { code, residual, jacobian }
 }
 
+/// Pattern of the matrix of a loop, and the slot of each entry.
 fn loop_matrix(
     jacobian: &Differentials,
     residuals: &[usize],
@@ -237,11 +267,12 @@ fn loop_matrix(
     (pattern, slots.into_iter().map(|(plus, _)| plus as usize).collect())
 }
 
-/// Makes the programs.
+/// Makes the programs of all drafts.
 pub fn assemble(drafts: Vec<BlockDraft>, assembler: &mut ProgramAssembler) -> Vec<BlockCode> {
     drafts.into_iter().map(|draft| assemble_one(draft, assembler)).collect()
 }
 
+/// Makes the programs of one block.
 fn assemble_one(draft: BlockDraft, assembler: &mut ProgramAssembler) -> BlockCode {
     match draft {
         BlockDraft::Assign(run) => BlockCode::Assign(run.assemble(DefinitionOrder::Dependency, assembler)),
@@ -254,6 +285,7 @@ fn assemble_one(draft: BlockDraft, assembler: &mut ProgramAssembler) -> BlockCod
         }
         BlockDraft::Mixed { continuous, discrete } => BlockCode::Mixed(Box::new(MixedCode {
             continuous: assemble(continuous, assembler),
+            // discrete equations of a loop may read a value of the previous pass, so their order is kept
             discrete: discrete.into_iter().map(|run| run.assemble(DefinitionOrder::Given, assembler)).collect(),
         })),
     }

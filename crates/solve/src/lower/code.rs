@@ -1,17 +1,18 @@
-//! Straight code of one kernel: what the interpreter and the compiler to machine code both start from.
+//! Intermediate code of one kernel, from which both the bytecode and the machine code are made.
 //!
-//! A branch of an `if` is entered only when chosen, if it is worth a jump: everything that only that branch needs is
-//! computed inside it, everything else before. Cheap branches are both computed and one is selected; no operation on
-//! floating-point numbers traps.
+//! Expressions enter; a [`KernelCode`] of register steps leaves. A branch of an `if` is computed only when chosen, if
+//! it is expensive enough to be worth a jump: everything that only that branch needs is computed inside it, everything
+//! else before. Cheap branches are both computed, and one is selected. That is safe, because no floating-point
+//! operation traps.
 
 use bramah_expr::math::PowerMethod;
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, FunctionId, RelationalOp, UnaryFunction};
 use rustc_hash::FxHashMap;
 
-/// Where an argument comes from.
+/// Where an operand comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RegisterOperand {
-    /// An input of the kernel, or a slot: what the numbers of `Node::Var` mean to whoever made the expressions.
+    /// The number of an `ExprNode::Var`: an input of the kernel, or a slot, depending on who made the expressions.
     Input(u32),
     /// A number, by its bits.
     Number(u64),
@@ -19,49 +20,49 @@ pub enum RegisterOperand {
     Register(u32),
 }
 
-/// One step; each register is written once.
+/// One step. Each register is written once.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CodeStep {
     /// A function of one argument.
     Unary(UnaryFunction, u32, RegisterOperand),
-    /// A function of two arguments; never `Pow` with a whole or root exponent, those are written out.
+    /// A function of two arguments. `Pow` with a integer or root exponent never occurs; such powers are written out.
     Binary(BinaryFunction, u32, RegisterOperand, RegisterOperand),
     /// 1 when the relation holds, else 0.
     Rel(RelationalOp, u32, RegisterOperand, RegisterOperand),
-    /// `dst = if c <> 0 then a else b`, both at hand.
+    /// `dst = if c <> 0 then a else b`, with both sides computed before.
     Select { dst: u32, c: RegisterOperand, a: RegisterOperand, b: RegisterOperand },
-    /// The same, computing only the chosen one.
+    /// The same, computing only the chosen side.
     Branch { dst: u32, c: RegisterOperand, then: CodeBranch, otherwise: CodeBranch },
-    /// Outputs of a user function: number of the output and register.
+    /// A call of a user function; for each output that is used its number and register.
     Call { function: FunctionId, args: Vec<RegisterOperand>, outputs: Vec<(u32, u32)> },
 }
 
 /// One side of a [`CodeStep::Branch`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CodeBranch {
-    /// What only this side needs.
+    /// The steps that only this side needs.
     pub steps: Vec<CodeStep>,
-    /// The value; `None` only while the branch is being built.
+    /// The value of this side; `None` only while the branch is being built.
     pub value: Option<RegisterOperand>,
 }
 
 /// The code of a kernel.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KernelCode {
-    /// In order.
+    /// The steps in order.
     pub steps: Vec<CodeStep>,
     /// The value of each output.
     pub outputs: Vec<RegisterOperand>,
     /// Number of registers.
     pub registers: u32,
-    /// Number of nodes, for limits on size.
+    /// Number of nodes of the expressions, for limits on size.
     pub size: usize,
 }
 
-/// A branch that costs more than this (see [`node_cost`]) is jumped over when not needed.
+/// A branch that costs more than this (in units of [`node_cost`]) is skipped by a jump when it is not chosen.
 const WORTH_A_JUMP: u32 = 12;
 
-/// The cost of one node, in additions.
+/// The cost of one node, in units of an addition.
 fn node_cost(node: ExprNode) -> u32 {
     match node {
         ExprNode::Unary(UnaryFunction::Neg | UnaryFunction::Not | UnaryFunction::Abs | UnaryFunction::Floor, _) => 1,
@@ -69,49 +70,64 @@ fn node_cost(node: ExprNode) -> u32 {
         ExprNode::Unary(..) | ExprNode::Binary(BinaryFunction::Pow | BinaryFunction::Atan2, ..) => 20,
         ExprNode::Binary(BinaryFunction::Div, ..) => 4,
         ExprNode::Binary(..) | ExprNode::Rel(..) | ExprNode::If(..) => 1,
+        // a user function may contain loops
         ExprNode::Call(..) => 1000,
         _ => 0,
     }
 }
 
 impl KernelCode {
-    /// Code that computes `outputs`. Leaves are `Node::Var` (an input) and `Node::Num`.
+    /// Makes code that computes `outputs`. Leaves are `ExprNode::Var` (inputs) and `ExprNode::Num`.
     pub fn new(pool: &Exprs, outputs: &[ExprId]) -> KernelCode {
         let nodes = pool.reachable(outputs, |_| true);
         let mut builder = CodeBuilder::new(pool, &nodes);
         builder.assign_regions(outputs);
         builder.fill_regions();
+        // region 0 is the code outside all branches
         let steps = builder.emit(0);
         let outputs = outputs.iter().map(|&e| builder.operand(e)).collect();
         KernelCode { steps, outputs, registers: builder.registers, size: nodes.len() }
     }
 }
 
-/// A place in the code: the whole, or one side of a branch.
+/// A place in the code: the code outside all branches, or one side of a branch.
 #[derive(Clone, Copy)]
 struct CodeRegion {
+    /// The region around it.
     parent: u32,
+    /// Number of branches around it.
     depth: u32,
 }
 
+/// No use of the node is known yet.
 const UNUSED: u32 = u32::MAX;
 
+/// Builds the code of one kernel.
 struct CodeBuilder<'a> {
+    /// The expressions.
     pool: &'a Exprs,
+    /// All nodes needed, operands before their users.
     nodes: &'a [ExprId],
+    /// The position of each node in `nodes`.
     index: FxHashMap<ExprId, u32>,
-    /// Per node, its region.
+    /// For each node its region.
     region: Vec<u32>,
+    /// All regions.
     regions: Vec<CodeRegion>,
-    /// Per node, the regions of its branches, if it is an `if` worth a jump.
+    /// For each `if` that is worth a jump the regions of its two sides.
     branches: FxHashMap<u32, (u32, u32)>,
+    /// For each region its nodes, in order.
     contents: Vec<Vec<u32>>,
+    /// For each node that is written the operand that holds its value.
     operands: Vec<RegisterOperand>,
+    /// Calls written so far: region and function call, to the position of the step.
     calls: FxHashMap<(u32, ExprNode), usize>,
+    /// Number of registers used.
     registers: u32,
 }
 
 impl<'a> CodeBuilder<'a> {
+    /// Nothing is placed yet.
     fn new(pool: &'a Exprs, nodes: &'a [ExprId]) -> Self {
         CodeBuilder {
             pool,
@@ -127,12 +143,16 @@ impl<'a> CodeBuilder<'a> {
         }
     }
 
-    /// Finds for each node the innermost region that holds all its uses.
+    /// Finds for each node the innermost region that contains all its uses.
+    ///
+    /// The nodes are visited from the outputs to the leaves, so that all uses of a node are known when it is reached.
+    /// An `if` that is worth a jump opens two regions.
     fn assign_regions(&mut self, outputs: &[ExprId]) {
         let costs = self.costs();
         for &e in outputs {
             self.region[self.index[&e] as usize] = 0;
         }
+        // backwards: all users of a node come after it
         for i in (0..self.nodes.len()).rev() {
             let here = self.region[i];
             match self.pool.node(self.nodes[i]) {
@@ -152,7 +172,9 @@ impl<'a> CodeBuilder<'a> {
         }
     }
 
-    /// What each node costs with all it needs, counting shared parts as often as they are used, up to a limit.
+    /// The cost of each node with all its operands.
+    ///
+    /// Shared parts count as often as they are used. The cost is limited to 1000, so that it cannot overflow.
     fn costs(&self) -> Vec<u32> {
         let mut costs: Vec<u32> = Vec::with_capacity(self.nodes.len());
         for &e in self.nodes {
@@ -163,17 +185,20 @@ impl<'a> CodeBuilder<'a> {
         costs
     }
 
+    /// Whether one side of an `if` is expensive enough for a jump.
     fn worth_a_jump(&self, costs: &[u32], a: ExprId, b: ExprId) -> bool {
         let cost = |e: ExprId| costs[self.index[&e] as usize];
         cost(a).max(cost(b)) > WORTH_A_JUMP
     }
 
+    /// A new region inside `parent`.
     fn new_region(&mut self, parent: u32) -> u32 {
         let depth = self.regions[parent as usize].depth + 1;
         self.regions.push(CodeRegion { parent, depth });
         u32::try_from(self.regions.len() - 1).expect("fewer than 2^32 branches")
     }
 
+    /// Notes a use of a node in a region: its region becomes the innermost one around all uses.
     fn used(&mut self, e: ExprId, region: u32) {
         let i = self.index[&e] as usize;
         self.region[i] = match self.region[i] {
@@ -182,6 +207,7 @@ impl<'a> CodeBuilder<'a> {
         };
     }
 
+    /// The innermost region that contains both regions.
     fn common(&self, mut a: u32, mut b: u32) -> u32 {
         while a != b {
             let (ra, rb) = (self.regions[a as usize], self.regions[b as usize]);
@@ -195,6 +221,7 @@ impl<'a> CodeBuilder<'a> {
         a
     }
 
+    /// Lists the nodes of each region.
     fn fill_regions(&mut self) {
         self.contents = vec![Vec::new(); self.regions.len()];
         for (i, &region) in (0..).zip(&self.region) {
@@ -202,15 +229,18 @@ impl<'a> CodeBuilder<'a> {
         }
     }
 
+    /// The operand that holds the value of a node.
     fn operand(&self, e: ExprId) -> RegisterOperand {
         self.operands[self.index[&e] as usize]
     }
 
+    /// A new register.
     fn register(&mut self) -> u32 {
         self.registers += 1;
         self.registers - 1
     }
 
+    /// Writes the steps of a region.
     fn emit(&mut self, region: u32) -> Vec<CodeStep> {
         let mut steps = Vec::new();
         for i in std::mem::take(&mut self.contents[region as usize]) {
@@ -220,6 +250,7 @@ impl<'a> CodeBuilder<'a> {
         steps
     }
 
+    /// Writes the steps of one node and returns its value.
     fn emit_node(&mut self, region: u32, i: u32, steps: &mut Vec<CodeStep>) -> RegisterOperand {
         let pool = self.pool;
         match pool.node(self.nodes[i as usize]) {
@@ -244,12 +275,14 @@ impl<'a> CodeBuilder<'a> {
         }
     }
 
+    /// Appends a step that writes a new register.
     fn push(&mut self, steps: &mut Vec<CodeStep>, step: impl FnOnce(u32) -> CodeStep) -> RegisterOperand {
         let dst = self.register();
         steps.push(step(dst));
         RegisterOperand::Register(dst)
     }
 
+    /// Writes an `if`: a selection, or a branch where it has regions.
     fn emit_if(&mut self, i: u32, (c, a, b): (ExprId, ExprId, ExprId), steps: &mut Vec<CodeStep>) -> RegisterOperand {
         let condition = self.operand(c);
         let Some(&(then, otherwise)) = self.branches.get(&i) else {
@@ -261,7 +294,7 @@ impl<'a> CodeBuilder<'a> {
         self.push(steps, |dst| CodeStep::Branch { dst, c: condition, then, otherwise })
     }
 
-    /// Powers as [`bramah_expr::math::pow`] computes them, written out where the exponent is known.
+    /// Writes a power as [`bramah_expr::math::pow`] computes it, so that all evaluators agree to the bit.
     fn emit_power(
         &mut self,
         x: RegisterOperand,
@@ -283,6 +316,7 @@ impl<'a> CodeBuilder<'a> {
         }
     }
 
+    /// Writes a power with an integer exponent by repeated squaring, and a negative one as a reciprocal.
     fn emit_whole_power(&mut self, x: RegisterOperand, n: i32, steps: &mut Vec<CodeStep>) -> RegisterOperand {
         let one = RegisterOperand::Number(1f64.to_bits());
         let (mut left, mut square, mut product) = (n.unsigned_abs(), x, None);
@@ -302,7 +336,7 @@ impl<'a> CodeBuilder<'a> {
         if n < 0 { self.push(steps, |dst| CodeStep::Binary(BinaryFunction::Div, dst, one, value)) } else { value }
     }
 
-    /// Calls of one function with the same arguments in the same region are one call.
+    /// Writes a call. Calls of one function with the same arguments in the same region become one step.
     fn emit_call(&mut self, region: u32, node: ExprNode, steps: &mut Vec<CodeStep>) -> RegisterOperand {
         let ExprNode::Call(function, output, args) = node else { unreachable!("only calls come here") };
         let key = (region, ExprNode::Call(function, 0, args));

@@ -1,4 +1,7 @@
-//! What `when` clauses do and what `assert`s demand, as slots to be looked at.
+//! Definitions of the conditions of `when` actions and of assertions.
+//!
+//! `lower` calls [`actions`], [`asserts`] and [`standing`]. The result is a [`ConditionProgram`], which the event
+//! iteration and the driver run.
 
 use super::continuous::Observables;
 use super::layout::ValueSlot;
@@ -11,19 +14,23 @@ use bramah_model::flat::Variability;
 use bramah_model::structure::{Dae, EventActionKind};
 use rustc_hash::FxHashMap;
 
-/// Conditions whose definitions are made and whose program is not.
+/// Conditions whose definitions are made but whose program is not.
 #[derive(Debug)]
 pub struct ConditionsDraft {
+    /// The definitions.
     defs: KernelDefinitions,
+    /// The slots of the results, with an empty program.
     code: ConditionProgram,
 }
 
 impl ConditionsDraft {
+    /// No conditions.
     fn new() -> Self {
         let code = ConditionProgram { program: Program::default(), holds: Vec::new(), value: Vec::new() };
         ConditionsDraft { defs: KernelDefinitions::default(), code }
     }
 
+    /// Adds the definition of an expression and returns its new slot.
     fn define(&mut self, e: ExprId, shaper: &mut KernelShaper) -> usize {
         let inline = FxHashMap::default();
         let shaped = shaper.shape(e, &ShapingRules { initial: false, inline: &inline, hoist: true });
@@ -32,7 +39,7 @@ impl ConditionsDraft {
         target as usize
     }
 
-    /// The conditions with their program, which first computes what `before` computes.
+    /// Makes the program. It first computes those variables of `before` that the conditions read.
     pub fn assemble(mut self, before: Option<&Observables>, assembler: &mut ProgramAssembler) -> ConditionProgram {
         let kernels = assembler.kernels();
         let defs = before.map_or_else(|| self.defs.clone(), |before| before.before(kernels, &self.defs));
@@ -42,6 +49,8 @@ impl ConditionsDraft {
 }
 
 /// `dae.actions`: whether they fire, and their values.
+///
+/// The value of a `reinit` is its new state, that of an `assert` its condition. `terminate` has none.
 pub fn actions(dae: &Dae, shaper: &mut KernelShaper) -> ConditionsDraft {
     let mut draft = ConditionsDraft::new();
     for action in &dae.actions {
@@ -58,7 +67,9 @@ pub fn actions(dae: &Dae, shaper: &mut KernelShaper) -> ConditionsDraft {
     draft
 }
 
-/// The entries of `dae.asserts` that speak of parameters alone whose values stand before the start.
+/// The entries of `dae.asserts` whose conditions depend only on parameters that are known before the start.
+///
+/// They are checked once per set of parameters, before the initial system is solved.
 pub fn standing(dae: &Dae) -> Vec<usize> {
     let mut walk = NodeTraversal::default();
     let mut stands = |condition: ExprId| {
@@ -70,6 +81,7 @@ pub fn standing(dae: &Dae) -> Vec<usize> {
                     let still = dae.variables[v.index()].variability <= Variability::Parameter;
                     still && !dae.free_parameters.contains(&v)
                 }
+                // an operation passes, its operands are visited in turn; any other leaf depends on the run
                 _ => !dae.exprs.operands(e).as_slice().is_empty(),
             };
             stands

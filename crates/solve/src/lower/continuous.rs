@@ -1,4 +1,6 @@
-//! The IDA system: definitions of residual, Jacobian and zero crossings, and of what is observed.
+//! Definitions of the IDA system: residual, Jacobian, root functions, conserved quantities, and observed variables.
+//!
+//! The plan of `eliminate` enters; drafts leave, from which `ProgramDrafts` makes the programs.
 
 use super::eliminate::{AssignmentFate, ContinuousPlan};
 use super::jacobian::{Differentials, JacobianEntry, compress};
@@ -10,22 +12,25 @@ use bramah_expr::VarId;
 use bramah_model::structure::{CrossingKind, Dae, Unknown};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The definitions of the IDA system.
+/// The definitions of residual and Jacobian.
 #[derive(Debug)]
 pub struct ContinuousDraft {
-    /// Locals and right sides of rows.
+    /// Explicit variables with slots of their own, and right sides of rows.
     pub residual: KernelDefinitions,
-    /// Per row, the slot of its right side.
+    /// For each row the slot of its right side.
     pub row_slots: Vec<ValueSlot>,
-    /// The same with derivatives.
+    /// The same definitions with their derivatives.
     pub jacobian: Differentials,
-    /// Structure of the matrix.
+    /// Pattern of the Jacobian.
     pub pattern: SparsityPattern,
-    /// Per entry, the slots of what is added and subtracted.
+    /// For each entry the slots of the terms with plus and minus sign.
     pub entries: Vec<(ValueSlot, ValueSlot)>,
 }
 
 /// Makes the definitions of residual and Jacobian.
+///
+/// Both contain the same definitions: local explicit variables first, then the right sides of rows. The Jacobian adds
+/// their derivatives.
 pub fn draft(plan: &ContinuousPlan, shaper: &mut KernelShaper) -> ContinuousDraft {
     let rules = ShapingRules { initial: false, inline: &plan.inline, hoist: true };
     let (mut residual, mut jacobian) = (KernelDefinitions::default(), Differentials::default());
@@ -38,8 +43,10 @@ pub fn draft(plan: &ContinuousPlan, shaper: &mut KernelShaper) -> ContinuousDraf
     let mut targets: Vec<ValueSlot> = Vec::with_capacity(plan.explicit.len());
     for (i, assign) in plan.explicit.iter().enumerate() {
         let own = slot(shaper.layout.unknown(assign.unknown));
+        // a kept variable is an unknown: its own slot holds the value of IDA, so the right side needs another one
         let target = if plan.fates[i] == AssignmentFate::Kept { shaper.layout.work(1) } else { own };
         if let AssignmentFate::Local | AssignmentFate::Kept = plan.fates[i] {
+            // the Jacobian needs the values of variables that other definitions read
             let is_read = plan.fates[i] == AssignmentFate::Local && plan.users[i] > 0;
             define(assign.value, target, is_read, shaper);
         }
@@ -60,6 +67,7 @@ pub fn draft(plan: &ContinuousPlan, shaper: &mut KernelShaper) -> ContinuousDraf
     ContinuousDraft { residual, row_slots, jacobian, pattern, entries }
 }
 
+/// Starts the chain rule: an unknown has derivative 1 in its column, the derivative of a state has derivative cj.
 fn seed(plan: &ContinuousPlan, jacobian: &mut Differentials, layout: &mut ValueLayout) {
     let one = layout.number(1.0);
     for (j, column) in (0..).zip(&plan.columns) {
@@ -70,7 +78,9 @@ fn seed(plan: &ContinuousPlan, jacobian: &mut Differentials, layout: &mut ValueL
     }
 }
 
-/// `der(x) - value` and `v - value` turn the sign of the value's derivatives.
+/// Pattern and slots of the Jacobian.
+///
+/// In rows of the form `der(x) - value` and `v - value` the derivatives of the value have a minus sign.
 fn matrix(
     plan: &ContinuousPlan,
     row_slots: &[ValueSlot],
@@ -86,6 +96,7 @@ fn matrix(
             ResidualRowKind::Follows(_) => Some(one),
             ResidualRowKind::Residual => None,
         };
+        // the row q - quantity(x) has its 1 in the column of the quantity, not on the diagonal
         let own = if let ResidualRowKind::Follows(column) = row.kind { slot(column) } else { i };
         entries.extend(diagonal.map(|plus| JacobianEntry { column: own, row: i, plus, minus: zero }));
         for &(column, derivative) in jacobian.gradient(place) {
@@ -96,11 +107,12 @@ fn matrix(
     compress(plan.columns.len(), entries, zero)
 }
 
-/// Everything that follows explicitly from the unknowns of IDA, for outputs, crossings and asserts.
+/// Everything that follows explicitly from the unknowns of IDA, for outputs, crossings and assertions.
 #[derive(Clone, Debug, Default)]
 pub struct Observables {
-    /// Explicit assignments in order (but not those that IDA keeps), then aliases.
+    /// Explicit assignments in order (without those that are unknowns of IDA), then aliases.
     pub defs: KernelDefinitions,
+    /// For each slot the definition that computes it.
     producer: FxHashMap<ValueSlot, u32>,
 }
 
@@ -128,7 +140,7 @@ impl Observables {
         observables
     }
 
-    /// The definitions that these slots need, in order.
+    /// The definitions that these slots depend on, directly or through other definitions, in order.
     pub fn needed(&self, kernels: &KernelTable, slots: impl IntoIterator<Item = ValueSlot>) -> KernelDefinitions {
         let mut wanted: FxHashSet<u32> = FxHashSet::default();
         let mut stack: Vec<ValueSlot> = slots.into_iter().collect();
@@ -139,12 +151,13 @@ impl Observables {
                 stack.extend_from_slice(self.defs.get(kernels, i as usize).1);
             }
         }
+        // hash sets have no fixed order; the numbers of the definitions have
         let mut chosen: Vec<usize> = wanted.into_iter().map(|i| i as usize).collect();
         chosen.sort_unstable();
         self.defs.select(kernels, chosen)
     }
 
-    /// The same definitions with all those before them that they need.
+    /// `defs`, preceded by all observables that they depend on.
     pub fn before(&self, kernels: &KernelTable, defs: &KernelDefinitions) -> KernelDefinitions {
         let read = (0..defs.len()).flat_map(|i| defs.get(kernels, i).1.iter().copied());
         let mut all = self.needed(kernels, read);
@@ -153,18 +166,21 @@ impl Observables {
     }
 }
 
-/// Conserved quantities and their rates.
+/// The definitions of conserved quantities and their rates.
 #[derive(Debug, Default)]
 pub struct QuantitiesDraft {
-    /// Both, from the slots of variables.
+    /// Quantities and rates from the slots of variables.
     pub defs: KernelDefinitions,
     /// Each quantity by itself.
     pub alone: Vec<KernelDefinitions>,
-    /// The quantities.
+    /// The quantities with their columns and slots. The places in the Jacobian are added later.
     pub integrals: Vec<ConservedIntegral>,
 }
 
-/// The definitions of conserved quantities; rates go into the slots of their derivatives.
+/// The definitions of conserved quantities.
+///
+/// A quantity has a slot of its own, apart from the unknown of the same name in the integrator. Its rate goes into the
+/// slot of the derivative.
 pub fn quantities(plan: &ContinuousPlan, shaper: &mut KernelShaper) -> QuantitiesDraft {
     let mut draft = QuantitiesDraft::default();
     let inline = FxHashMap::default();
@@ -183,18 +199,18 @@ pub fn quantities(plan: &ContinuousPlan, shaper: &mut KernelShaper) -> Quantitie
     draft
 }
 
-/// Root functions.
+/// The definitions of the root functions.
 #[derive(Debug, Default)]
 pub struct CrossingsDraft {
-    /// Which entries of `dae.crossings` have one.
+    /// The entries of `dae.crossings` that have a root function.
     pub list: Vec<usize>,
-    /// The root functions from the slots of variables.
+    /// The root functions, computed from the slots of variables.
     pub defs: KernelDefinitions,
     /// The slot of each root function.
     pub slots: Vec<ValueSlot>,
 }
 
-/// The definitions of the root functions.
+/// The definitions of the root functions: left minus right side of a relation, or the argument of a `floor`.
 pub fn crossings(dae: &Dae, shaper: &mut KernelShaper) -> CrossingsDraft {
     let mut draft = CrossingsDraft::default();
     let inline = FxHashMap::default();
@@ -209,6 +225,7 @@ pub fn crossings(dae: &Dae, shaper: &mut KernelShaper) -> CrossingsDraft {
                 let shaped = shaper.shape(argument, &rules);
                 (shaped.expr, shaped.inputs)
             }
+            // known times are scheduled, not searched for
             CrossingKind::Time(..) => continue,
         };
         let target = shaper.layout.work(1);

@@ -1,12 +1,12 @@
-//! Which explicit variables IDA sees.
+//! Which explicit variables IDA sees as unknowns.
 //!
-//! Explicit assignments are no unknowns of IDA. Those with one user take their user's shape (inlined), the others are
-//! computed once per evaluation into their slot (local). In large systems a variable that many rows use and that
-//! depends on many columns is kept as an algebraic unknown: eliminating it would fill the Jacobian with
-//! rows x columns entries in place of rows + columns + 1.
+//! Explicit assignments are no unknowns of IDA. Those with one user are inserted into that user's kernel (inlined); the
+//! others are computed once per evaluation into their slot (local). In large systems a variable that many rows use and
+//! that depends on many columns is kept as an algebraic unknown. Eliminating it would fill the Jacobian with
+//! rows x columns entries in place of rows + columns + 1 (the count of H. Markowitz, Management Science 3 (1957) 255).
 //!
-//! A conserved quantity is an unknown beside the states: its row is its rate, and the row of the state that follows from
-//! it says what the quantity is by the states.
+//! A conserved quantity is an unknown beside the states. Its row is its rate. The row of the state that follows from it
+//! requires that the quantity by the states equals the integrated one.
 
 use super::layout::{ValueLayout, ValueSlot, slot};
 use super::{ColumnRole, ResidualRow, ResidualRowKind, UnknownColumn};
@@ -19,7 +19,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// Systems with at most this many unknowns keep no explicit variable.
 const SMALL: usize = 60;
 
-/// An inlined definition grows its user to at most this many nodes.
+/// Inlining stops when a definition would grow beyond this many nodes.
 const INLINED_SIZE: usize = 400;
 
 /// What becomes of an explicit assignment.
@@ -27,39 +27,40 @@ const INLINED_SIZE: usize = 400;
 pub enum AssignmentFate {
     /// No row needs it; only outputs do.
     Unused,
-    /// Its definition stands in its user's.
+    /// Its definition is part of its user's kernel.
     Inlined,
-    /// Computed into its slot.
+    /// It is computed into its slot at every evaluation.
     Local,
-    /// An unknown of IDA, with a row of its own.
+    /// It is an unknown of IDA, with a row of its own.
     Kept,
 }
 
-/// The continuous system as IDA is to see it.
+/// The continuous system as IDA sees it.
 #[derive(Clone, Debug, Default)]
 pub struct ContinuousPlan {
     /// All explicit assignments, in order.
     pub explicit: Vec<ExplicitAssignment>,
-    /// Per explicit assignment.
+    /// The fate of each explicit assignment.
     pub fates: Vec<AssignmentFate>,
-    /// The definitions that stand in for their variables, by slot.
+    /// The definitions that replace their variables, by slot.
     pub inline: FxHashMap<ValueSlot, ExprId>,
     /// The unknowns of IDA.
     pub columns: Vec<UnknownColumn>,
-    /// One row per column.
+    /// The rows, one per column.
     pub rows: Vec<ResidualRow>,
-    /// Per row, the explicit assignment it belongs to; `None` for the residual of a loop.
+    /// For each row the explicit assignment it belongs to; `None` for residuals of loops and rows of quantities.
     pub row_explicit: Vec<Option<usize>>,
-    /// Per explicit assignment, how many needed ones and residuals read it.
+    /// For each explicit assignment the number of needed assignments and residuals that read it.
     pub users: Vec<u32>,
-    /// States whose derivative is a tearing variable: column and slot of the derivative.
+    /// States whose derivative is a tearing variable: column, and slot of the derivative.
     pub torn: Vec<(usize, ValueSlot)>,
-    /// The quantities that are integrated, with their columns and those of the states that follow.
+    /// The integrated quantities, with their columns and those of the following states.
     pub integrals: Vec<(ConservedQuantity, usize, usize)>,
 }
 
-/// Sorts explicit assignments of `dae.continuous` into their fates, and gives every unknown its row. With `keep`, some
-/// explicit variables of large systems become unknowns; with `conserve`, conserved quantities do.
+/// Decides the fate of all explicit assignments of `dae.continuous`, and gives every unknown its row.
+///
+/// With `keep`, some explicit variables of large systems become unknowns. With `conserve`, conserved quantities do.
 pub fn plan(dae: &Dae, layout: &ValueLayout, keep: bool, conserve: bool) -> ContinuousPlan {
     let mut planner = ContinuousPlanner::new(dae, layout);
     planner.collect(&dae.continuous);
@@ -76,20 +77,22 @@ pub fn plan(dae: &Dae, layout: &ValueLayout, keep: bool, conserve: bool) -> Cont
     planner.finish()
 }
 
+/// No explicit assignment.
 const NOBODY: u32 = u32::MAX;
 
-/// What a row is made of that is no explicit assignment.
+/// What a row is made of, if not of an explicit assignment.
 #[derive(Clone, Copy)]
 enum RowOrigin {
-    /// The residual of a loop, with its equation and its unknown; whether that is the only one of its loop.
+    /// The residual of a loop: expression, equation, its unknown, and whether that is the only unknown of its loop.
     Residual(ExprId, u32, Unknown, bool),
     /// The rate of a conserved quantity.
     Rate(ConservedQuantity),
-    /// The quantity itself.
+    /// The conserved quantity itself, for the row of its state.
     Quantity(ConservedQuantity),
 }
 
 impl RowOrigin {
+    /// The expression of the row.
     fn value(&self) -> ExprId {
         match self {
             RowOrigin::Residual(value, ..) => *value,
@@ -99,30 +102,42 @@ impl RowOrigin {
     }
 }
 
+/// Collects the plan step by step, in the order of the calls in [`plan`].
 struct ContinuousPlanner<'a> {
+    /// The sorted model.
     dae: &'a Dae,
+    /// The slots of the model.
     layout: &'a ValueLayout,
+    /// All explicit assignments, in order.
     explicit: Vec<ExplicitAssignment>,
+    /// All rows that are no explicit assignments.
     roots: Vec<RowOrigin>,
-    /// Per slot, the explicit assignment that computes it.
+    /// For each slot the explicit assignment that computes it, or `NOBODY`.
     producer: Vec<u32>,
-    /// Per explicit assignment, then per residual, the explicit assignments it reads.
+    /// For each explicit assignment, then for each root, the explicit assignments it reads.
     reads: Vec<Vec<u32>>,
-    /// Per explicit assignment, then per residual, other slots it reads.
+    /// For each explicit assignment, then for each root, the other slots it reads.
     leaves: Vec<Vec<ValueSlot>>,
+    /// For each explicit assignment and root, whether a row needs it.
     needed: Vec<bool>,
+    /// For each explicit assignment the number of needed users.
     users: Vec<u32>,
+    /// The fate of each explicit assignment.
     fates: Vec<AssignmentFate>,
+    /// The unknowns so far.
     columns: Vec<UnknownColumn>,
-    /// Per slot, the column whose value or derivative it holds.
+    /// For each slot the column whose value or derivative it holds.
     seed: FxHashMap<ValueSlot, u32>,
+    /// Columns whose derivative is a tearing variable, with its slot.
     torn: Vec<(usize, ValueSlot)>,
-    /// States that follow from a quantity and whose derivatives no explicit assignment gives.
+    /// Following states whose derivatives no explicit assignment gives.
     followers_torn: Vec<VarId>,
+    /// The integrated quantities, with their columns and those of the following states.
     integrals: Vec<(ConservedQuantity, usize, usize)>,
 }
 
 impl<'a> ContinuousPlanner<'a> {
+    /// An empty plan.
     fn new(dae: &'a Dae, layout: &'a ValueLayout) -> Self {
         ContinuousPlanner {
             dae,
@@ -143,6 +158,7 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
+    /// Collects explicit assignments and residuals from the sorted blocks.
     fn collect(&mut self, blocks: &[BltBlock]) {
         for block in blocks {
             match block {
@@ -160,13 +176,16 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
+    /// Adds an explicit assignment.
     fn add_explicit(&mut self, assign: ExplicitAssignment) {
         self.producer[self.layout.unknown(assign.unknown)] = slot(self.explicit.len());
         self.explicit.push(assign);
     }
 
-    /// Takes the conserved quantities whose rates do not hang on how fast their own states move, and takes the residuals
-    /// that give these derivatives out.
+    /// Chooses the conserved quantities to integrate, and removes the residuals that gave their states' derivatives.
+    ///
+    /// A quantity is chosen when its rate does not depend on the derivative of its own state, and when the quantity
+    /// itself depends on that state.
     fn choose_conserved(&mut self) {
         let lone = |root: &RowOrigin| match root {
             RowOrigin::Residual(_, _, Unknown::Der(x), true) => Some(*x),
@@ -193,7 +212,7 @@ impl<'a> ContinuousPlanner<'a> {
         self.roots.retain(|root| lone(root).is_none_or(|x| !taken.contains(&x)));
     }
 
-    /// The slots on which an expression depends, through explicit assignments too.
+    /// All slots that an expression depends on, directly or through explicit assignments.
     fn reached(&self, e: ExprId) -> FxHashSet<ValueSlot> {
         let mut seen: FxHashSet<ValueSlot> = FxHashSet::default();
         let mut open = vec![e];
@@ -212,6 +231,7 @@ impl<'a> ContinuousPlanner<'a> {
         seen
     }
 
+    /// Finds for each definition which explicit assignments and which other slots it reads.
     fn find_leaves(&mut self) {
         let mut walk = NodeTraversal::default();
         let values = self.explicit.iter().map(|assign| assign.value);
@@ -231,15 +251,19 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
+    /// Whether an explicit assignment computes a derivative.
     fn is_derivative(&self, i: usize) -> bool {
         matches!(self.explicit[i].unknown, Unknown::Der(_))
     }
 
     /// Marks what rows need, and counts users among what is needed.
+    ///
+    /// Rows are the roots and all explicit derivatives.
     fn find_needed(&mut self) {
         let explicit = self.explicit.len();
         self.needed = (0..self.reads.len()).map(|i| i >= explicit || self.is_derivative(i)).collect();
         self.users = vec![0; explicit];
+        // definitions read earlier ones only, so one pass backwards suffices
         for i in (0..self.reads.len()).rev() {
             if self.needed[i] {
                 for &read in &self.reads[i] {
@@ -250,6 +274,10 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
+    /// Chooses between unused, inlined and local.
+    ///
+    /// A definition is inlined when it has one user and is not too large, or when it is a single node. Derivatives stay
+    /// local, because they are rows.
     fn choose_inlined(&mut self) {
         let mut size = vec![0usize; self.explicit.len()];
         for i in 0..self.explicit.len() {
@@ -267,7 +295,7 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
-    /// States, then tearing variables.
+    /// Numbers the unknowns: states, then tearing variables and quantities in the order of the roots.
     fn number_columns(&mut self) {
         for &x in &self.dae.states {
             self.add_column(x, ColumnRole::State);
@@ -290,7 +318,7 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
-    /// The derivative of a state is read from what the integrator has.
+    /// The derivative of this state is read from the integrator's y'.
     fn add_torn(&mut self, x: VarId) {
         let column = self.seed[&slot(self.layout.var(x))];
         let der = slot(self.layout.unknown(Unknown::Der(x)));
@@ -298,17 +326,18 @@ impl<'a> ContinuousPlanner<'a> {
         self.torn.push((column as usize, der));
     }
 
+    /// Adds an unknown.
     fn add_column(&mut self, variable: VarId, role: ColumnRole) {
         self.seed.insert(slot(self.layout.var(variable)), slot(self.columns.len()));
         self.columns.push(UnknownColumn { variable, role });
     }
 
-    /// The Markowitz count decides: rows x columns against rows + columns + 1.
+    /// Keeps a variable as an unknown where that saves entries: rows x columns > rows + columns + 1.
     fn choose_kept(&mut self) {
         if self.columns.len() <= SMALL {
             return;
         }
-        // what a quantity is by its state must be seen along the state
+        // the search for a following state varies its quantity along the state, which a kept unknown would hide
         let in_quantity = self.in_quantities();
         let mut spans: Vec<Vec<u32>> = Vec::with_capacity(self.explicit.len());
         for i in 0..self.explicit.len() {
@@ -321,6 +350,7 @@ impl<'a> ContinuousPlanner<'a> {
             {
                 let Unknown::Var(v) = self.explicit[i].unknown else { unreachable!("derivatives are not kept") };
                 self.fates[i] = AssignmentFate::Kept;
+                // users of a kept variable depend on its column alone
                 span = vec![slot(self.columns.len())];
                 self.add_column(v, ColumnRole::Algebraic);
             }
@@ -328,7 +358,7 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
-    /// The explicit assignments behind conserved quantities.
+    /// For each explicit assignment whether a conserved quantity depends on it.
     fn in_quantities(&self) -> Vec<bool> {
         let explicit = self.explicit.len();
         let quantities = (0..self.roots.len()).filter(|&k| matches!(self.roots[k], RowOrigin::Quantity(_)));
@@ -342,6 +372,7 @@ impl<'a> ContinuousPlanner<'a> {
         found
     }
 
+    /// Whether a variable can be an unknown of IDA: only variables of type Real.
     fn can_be_kept(&self, i: usize) -> bool {
         match self.explicit[i].unknown {
             Unknown::Var(v) => self.dae.variables[v.index()].ty == ScalarType::Real,
@@ -349,7 +380,7 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
-    /// The columns an explicit assignment depends on, sorted.
+    /// The columns that an explicit assignment depends on, sorted.
     fn span(&self, i: usize, spans: &[Vec<u32>]) -> Vec<u32> {
         let mut span: Vec<u32> = self.leaves[i].iter().filter_map(|leaf| self.seed.get(leaf).copied()).collect();
         for &read in &self.reads[i] {
@@ -360,6 +391,9 @@ impl<'a> ContinuousPlanner<'a> {
         span
     }
 
+    /// Gives every column its row and returns the plan.
+    ///
+    /// Panics where a column has no row, which would be an error of the sorting.
     fn finish(self) -> ContinuousPlan {
         let mut rows: Vec<Option<(ResidualRow, Option<usize>)>> = vec![None; self.columns.len()];
         let mut inline = FxHashMap::default();
@@ -369,6 +403,7 @@ impl<'a> ContinuousPlanner<'a> {
                 inline.insert(slot(self.layout.unknown(unknown)), value);
             }
             let kind = match (unknown, fate) {
+                // the row of a following state is that of its quantity
                 (Unknown::Der(x), _) if self.follows(x) => continue,
                 (Unknown::Der(_), _) => ResidualRowKind::Derivative,
                 (_, AssignmentFate::Kept) => ResidualRowKind::Explicit,
@@ -406,15 +441,17 @@ impl<'a> ContinuousPlanner<'a> {
         }
     }
 
+    /// The column of a variable that is an unknown.
     fn place(&self, v: VarId) -> usize {
         self.seed[&slot(self.layout.var(v))] as usize
     }
 
+    /// Whether a state follows from a conserved quantity.
     fn follows(&self, x: VarId) -> bool {
         self.columns[self.place(x)].role == ColumnRole::Following
     }
 
-    /// The column of a variable or of a state's derivative.
+    /// The column of a variable or of a state's derivative; `None` where it is no unknown.
     fn column(&self, unknown: Unknown) -> Option<usize> {
         let (Unknown::Var(v) | Unknown::Der(v)) = unknown;
         self.seed.get(&slot(self.layout.var(v))).map(|&column| column as usize)

@@ -1,27 +1,32 @@
-//! The state that follows from a conserved quantity, by a search along the state alone.
+//! The search for the state that belongs to a conserved quantity, along this state alone.
 //!
-//! The row of such a state could say `quantity - value = 0`. Where a void closes, the modulus of oil changes by a factor
-//! of a hundred thousand within some hundred pascals: the corrector of the integrator, which trusts that the equations of
-//! a step are nearly linear, takes a pressure there that belongs to another mass. So the row is `state - solution`, with
-//! the state that has this quantity: linear however the quantity bends, and in the unit of the state. What is positive is
-//! followed from afar by its logarithm: the mass of a liquid and that of its voids both bend as an exponential does.
+//! `ExecutableSystem::residual` calls [`solve`] for each conserved quantity. The row could also be `quantity - value =
+//! 0`. But where a void closes, the bulk modulus of oil changes by a factor of 100,000 within some hundred pascals. The
+//! integrator's corrector, which assumes nearly linear equations within a step, then accepts a pressure that belongs to
+//! another mass. The row `state - solution` is linear however the quantity bends, and has the unit of the state. Far
+//! from the solution the search follows the logarithm of a positive quantity, because the mass of a liquid and that of
+//! its voids both change exponentially.
 
-/// Corrections smaller than this part of the way gone, or of the state, end the search ...
+/// The search ends when the correction is below this part of the way gone and of the last step ...
 const CONTRACTED: f64 = 1e-3;
-/// ... the first kind where the last two slopes differ by less than this factor: else the correction is a guess across a bend.
+/// ... if the last two slopes differ by less than this factor. Otherwise the correction is a guess across a bend.
 const STRAIGHT: f64 = 2.0;
+/// The search also ends when the correction is below this part of the state.
 const ROUND_OFF: f64 = 1e-13;
+/// Evaluations of the quantity at most.
 const MOST: u32 = 80;
-/// A quantity that changes by less than this part is followed as it is: the mass of a gas is proportional to its pressure.
+/// A quantity whose logarithm changes by less than this is followed as it is. The mass of a gas is proportional to its
+/// pressure, and needs no logarithm.
 const NEAR_BY: f64 = 0.1;
-/// A step that is not bracketed is at most so many times as long as the one before.
+/// A step without a bracket is at most this many times as long as the one before.
 const GROWTH: f64 = 8.0;
-/// Step of the difference quotient where no slope is known, over the state's size.
+/// Step of the difference quotient where no slope is known, relative to the state.
 const DIFFERENCE: f64 = 1e-7;
 
-/// The `x` at which `quantity(x)`, which grows with x or falls with it, is `wanted`, from `start` where it is `there`.
-/// `slope` is the derivative as far as it is known, and is brought up to date. `None` where a value is not finite or none
-/// is found.
+/// The `x` at which `quantity(x)` is `wanted`. The quantity must be monotonic.
+///
+/// The search starts at `start`, where the quantity is `there`. `slope` is the derivative as far as it is known, and is
+/// updated. `None` where a value is not finite or no solution is found.
 pub fn solve(
     mut quantity: impl FnMut(f64) -> f64,
     wanted: f64,
@@ -39,10 +44,12 @@ pub fn solve(
     if *slope == 0.0 || !slope.is_finite() || !(wanted - there).is_finite() {
         return None;
     }
+    // a falling quantity is negated, so that `rise` sees a growing one
     let sign = slope.signum();
     let mut rising = slope.abs();
     let far = (wanted / there).ln().abs() > NEAR_BY;
     let found = if far && wanted > 0.0 && there > 0.0 {
+        // the slope of the logarithm, and back after the search
         rising /= there;
         let found = rise(|x| sign * (quantity(x) / wanted).ln(), 0.0, start, sign * (there / wanted).ln(), &mut rising);
         rising *= wanted;
@@ -54,13 +61,14 @@ pub fn solve(
     found
 }
 
-/// The same of a quantity that grows.
+/// The same for a growing quantity: secant steps within a bracket that narrows.
 fn rise(mut quantity: impl FnMut(f64) -> f64, wanted: f64, start: f64, there: f64, slope: &mut f64) -> Option<f64> {
     let (mut x, mut missing) = (start, wanted - there);
     let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
     let mut step = missing / *slope;
     let mut before = step.abs();
     for _ in 0..MOST {
+        // every evaluation is a bound on one side
         if missing > 0.0 {
             low = x
         } else {
@@ -78,6 +86,7 @@ fn rise(mut quantity: impl FnMut(f64) -> f64, wanted: f64, start: f64, there: f6
             return Some(x);
         }
         let left = wanted - quantity(next);
+        // outside the domain of the quantity: half the step
         if !left.is_finite() {
             step = 0.5 * (next - x);
             before = step.abs();
@@ -85,6 +94,7 @@ fn rise(mut quantity: impl FnMut(f64) -> f64, wanted: f64, start: f64, there: f6
         }
         let secant = (missing - left) / (next - x);
         let straight = secant < STRAIGHT * *slope && *slope < STRAIGHT * secant;
+        // a slope of the wrong sign is rounding error
         if secant > 0.0 && secant.is_finite() {
             *slope = secant;
         }

@@ -1,103 +1,153 @@
-//! Register bytecode over the array of values: the reference for machine code, and what runs where compiling would
-//! cost more than it saves.
+//! Register bytecode over the array of values.
 //!
-//! Every operand is a place in the array of values: a slot, the slot of a number, or a place in the scratch region at
-//! the array's end. Scratch places carry [`SCRATCH`] until [`Bytecode::relocate`] knows where that region begins.
+//! It is the reference for machine code, and it runs what is not worth compiling. [`KernelCode`] enters; [`Bytecode`]
+//! leaves it. Every operand is a place in the array of values: a slot, the slot of a number, or a place in the scratch
+//! region at the end of the array. Scratch places carry the mark [`SCRATCH`] until [`Bytecode::relocate`] knows where
+//! that region begins.
 
 use super::code::{CodeBranch, CodeStep, KernelCode, RegisterOperand};
 use super::layout::{ValueLayout, ValueSlot, slot};
 use bramah_expr::function::Function;
 use bramah_expr::{BinaryFunction, FunctionId, RelationalOp, UnaryFunction, math};
 
-/// Marks a place counted from the beginning of the scratch region.
+/// Marks a place that is counted from the beginning of the scratch region.
 pub const SCRATCH: ValueSlot = 1 << 31;
 
+/// The operations. Operands `a`, `b`, `c` and the result `dst` are places, if not stated otherwise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 enum BytecodeOperation {
+    /// `dst = a`
     Move,
-    /// The bits of a number in `a` (low) and `b` (high).
+    /// `dst` = the number with the low bits `a` and the high bits `b`.
     Number,
+    /// `dst = -a`
     Neg,
+    /// `dst` = 1 when `a` is 0, else 0.
     Not,
+    /// `dst = |a|`
     Abs,
+    /// Square root of `a`.
     Sqrt,
+    /// Largest integer not above `a`.
     Floor,
+    /// -1, 0 or 1.
     Sign,
+    /// Exponential function of `a`.
     Exp,
+    /// Natural logarithm of `a`.
     Log,
+    /// Logarithm of `a` to base 10.
     Log10,
+    /// Sine of `a` in radians.
     Sin,
+    /// Cosine of `a` in radians.
     Cos,
+    /// Tangent of `a` in radians.
     Tan,
+    /// Arc sine in radians.
     Asin,
+    /// Arc cosine in radians.
     Acos,
+    /// Arc tangent in radians.
     Atan,
+    /// Hyperbolic sine.
     Sinh,
+    /// Hyperbolic cosine.
     Cosh,
+    /// Hyperbolic tangent.
     Tanh,
+    /// `dst = a + b`; the following operations have two operands.
     Add,
+    /// `dst = a - b`
     Sub,
+    /// `dst = a b`
     Mul,
+    /// `dst = a / b`
     Div,
+    /// `a` to the power `b`.
     Pow,
+    /// Angle of the point with x = `b` and y = `a`.
     Atan2,
+    /// The smaller operand.
     Min,
+    /// The larger operand.
     Max,
+    /// 1 when both operands are not 0, else 0.
     And,
+    /// 1 when an operand is not 0, else 0.
     Or,
+    /// 1 when `a < b`, else 0; the following relations are of the same kind.
     Lt,
+    /// 1 when `a <= b`.
     Le,
+    /// 1 when `a > b`.
     Gt,
+    /// 1 when `a >= b`.
     Ge,
+    /// 1 when `a = b`.
     Eq,
+    /// 1 when `a <> b`.
     Ne,
-    /// `if c <> 0 then a else b`
+    /// `dst = if c <> 0 then a else b`
     Select,
-    /// Go on at instruction `b`.
+    /// Continues at instruction `b`.
     Jump,
-    /// Go on at instruction `b` when `a` is 0.
+    /// Continues at instruction `b` when `a` is 0.
     JumpIfZero,
-    /// The call site `a`.
+    /// Calls the user function of call site `a`.
     Call,
 }
 
+/// One instruction.
 #[derive(Clone, Copy, Debug)]
 struct BytecodeInstruction {
+    /// What is computed.
     op: BytecodeOperation,
+    /// Place of the result.
     dst: ValueSlot,
+    /// First operand.
     a: ValueSlot,
+    /// Second operand.
     b: ValueSlot,
+    /// Third operand.
     c: ValueSlot,
 }
 
+/// A call of a user function.
 #[derive(Clone, Debug)]
 struct CallSite {
+    /// The function.
     function: FunctionId,
+    /// Places of the arguments.
     args: Vec<ValueSlot>,
+    /// For each output that is used its number and its place.
     outputs: Vec<(u32, ValueSlot)>,
 }
 
-/// Instructions that compute one kernel.
+/// Instructions that compute one kernel or one piece of straight code.
 #[derive(Clone, Debug, Default)]
 pub struct Bytecode {
+    /// The instructions in order.
     instructions: Vec<BytecodeInstruction>,
+    /// The call sites of user functions.
     calls: Vec<CallSite>,
+    /// Number of scratch places needed.
     scratch: u32,
 }
 
 impl Bytecode {
-    /// Code whose inputs are slots, each output going to the slot in `targets`.
+    /// Code whose inputs are slots, and whose outputs go to the slots in `targets`.
     pub fn straight(code: &KernelCode, targets: &[ValueSlot], layout: &ValueLayout) -> Bytecode {
         let mut writer = BytecodeWriter::new(code, layout, 0, |input| input);
+        // writing an output early is wrong where a later instruction still reads the old value of its slot
         if !writer.reads_any(code, targets) {
             writer.write_in_place(code, targets);
         }
         writer.finish(code, targets)
     }
 
-    /// Code whose input number `i` is at scratch place `i`, and whose output number `k` goes to scratch place
-    /// `inputs + k`.
+    /// Code whose input `i` is at scratch place `i`, and whose output `k` goes to scratch place `inputs + k`.
     pub fn looped(code: &KernelCode, inputs: u32, layout: &ValueLayout) -> Bytecode {
         let targets: Vec<ValueSlot> = (inputs..).take(code.outputs.len()).map(|place| SCRATCH | place).collect();
         let mut writer = BytecodeWriter::new(code, layout, inputs + slot(targets.len()), |input| SCRATCH | input);
@@ -110,12 +160,12 @@ impl Bytecode {
         self.instructions.len()
     }
 
-    /// How many scratch places the code needs.
+    /// Number of scratch places needed.
     pub fn scratch(&self) -> u32 {
         self.scratch
     }
 
-    /// Tells where the scratch region begins.
+    /// Replaces marked places by slots, with the scratch region beginning at `base`.
     pub fn relocate(&mut self, base: ValueSlot) {
         let fix = |place: &mut ValueSlot| {
             if *place & SCRATCH != 0 {
@@ -125,6 +175,7 @@ impl Bytecode {
         for i in &mut self.instructions {
             fix(&mut i.dst);
             match i.op {
+                // their operands are bits, instructions and call sites, not places
                 BytecodeOperation::Number | BytecodeOperation::Jump | BytecodeOperation::Call => {}
                 BytecodeOperation::JumpIfZero => fix(&mut i.a),
                 _ => [&mut i.a, &mut i.b, &mut i.c].into_iter().for_each(fix),
@@ -136,7 +187,7 @@ impl Bytecode {
         }
     }
 
-    /// Runs once.
+    /// Runs the code once.
     pub fn run(&self, functions: &[Function], v: &mut [f64]) {
         let code = &self.instructions[..];
         let mut pc = 0;
@@ -202,9 +253,11 @@ impl Bytecode {
 }
 
 impl CallSite {
+    /// Calls the function with its arguments and stores the outputs that are used.
     fn run(&self, functions: &[Function], v: &mut [f64]) {
         let args: Vec<f64> = self.args.iter().map(|&arg| v[arg as usize]).collect();
         let function = &functions[self.function.0 as usize];
+        // an output that the function does not set stays NaN, which the solver detects
         let mut out = vec![f64::NAN; function.outputs.len()];
         function.call(functions, &args, &mut out);
         for &(output, place) in &self.outputs {
@@ -215,20 +268,25 @@ impl CallSite {
 
 /// Writes the instructions of one kernel.
 struct BytecodeWriter<'a, F> {
+    /// The slots of the model, for constants.
     layout: &'a ValueLayout,
+    /// The place of each input.
     input: F,
-    /// Where each register lives.
+    /// The place of each register.
     places: Vec<ValueSlot>,
+    /// The code so far.
     bytecode: Bytecode,
 }
 
 impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
+    /// Gives each register a scratch place of its own.
     fn new(code: &KernelCode, layout: &'a ValueLayout, first_register: u32, input: F) -> Self {
         let places = (first_register..).take(code.registers as usize).map(|place| SCRATCH | place).collect();
         let scratch = first_register + code.registers;
         BytecodeWriter { layout, input, places, bytecode: Bytecode { scratch, ..Bytecode::default() } }
     }
 
+    /// Writes all steps, and the moves of outputs that are not in place.
     fn finish(mut self, code: &KernelCode, targets: &[ValueSlot]) -> Bytecode {
         self.steps(&code.steps);
         for (&output, &target) in code.outputs.iter().zip(targets) {
@@ -238,7 +296,7 @@ impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
         self.bytecode
     }
 
-    /// Lets registers that are outputs live where the outputs go.
+    /// Lets registers that are outputs live in the places of the outputs, which saves moves.
     fn write_in_place(&mut self, code: &KernelCode, targets: &[ValueSlot]) {
         for (&output, &target) in code.outputs.iter().zip(targets) {
             if let RegisterOperand::Register(r) = output
@@ -249,7 +307,7 @@ impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
         }
     }
 
-    /// Whether the code reads one of these slots, so that writing early would change what is read later.
+    /// Whether the code reads one of these slots.
     fn reads_any(&self, code: &KernelCode, targets: &[ValueSlot]) -> bool {
         let mut targets = targets.to_vec();
         targets.sort_unstable();
@@ -266,16 +324,19 @@ impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
         found
     }
 
+    /// Appends an instruction.
     fn push(&mut self, op: BytecodeOperation, dst: ValueSlot, [a, b, c]: [ValueSlot; 3]) {
         self.bytecode.instructions.push(BytecodeInstruction { op, dst, a, b, c });
     }
 
+    /// Appends a move, if the places differ.
     fn copy(&mut self, from: ValueSlot, to: ValueSlot) {
         if from != to {
             self.push(BytecodeOperation::Move, to, [from; 3]);
         }
     }
 
+    /// The place of an operand.
     fn place(&mut self, operand: RegisterOperand) -> ValueSlot {
         match operand {
             RegisterOperand::Input(input) => (self.input)(input),
@@ -284,7 +345,7 @@ impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
         }
     }
 
-    /// A number that came up after the slots were given out.
+    /// The place of a number that has no slot. It is written into a scratch place by an instruction.
     fn number(&mut self, bits: u64) -> ValueSlot {
         let place = SCRATCH | self.bytecode.scratch;
         self.bytecode.scratch += 1;
@@ -293,12 +354,14 @@ impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
         place
     }
 
+    /// Writes steps in order.
     fn steps(&mut self, steps: &[CodeStep]) {
         for step in steps {
             self.step(step);
         }
     }
 
+    /// Writes one step.
     fn step(&mut self, step: &CodeStep) {
         match step {
             &CodeStep::Unary(op, dst, a) => {
@@ -330,6 +393,7 @@ impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
         }
     }
 
+    /// Writes an `if` with jumps over the side that is not chosen. The targets of jumps are filled in afterwards.
     fn branch(&mut self, dst: ValueSlot, c: RegisterOperand, then: &CodeBranch, otherwise: &CodeBranch) {
         let c = self.place(c);
         let over_then = self.bytecode.instructions.len();
@@ -342,6 +406,7 @@ impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
         self.bytecode.instructions[over_otherwise].b = slot(self.bytecode.instructions.len());
     }
 
+    /// Writes one side of a branch.
     fn side(&mut self, side: &CodeBranch, dst: ValueSlot) {
         self.steps(&side.steps);
         let value = self.place(side.value.expect("a finished branch has a value"));
@@ -349,7 +414,7 @@ impl<'a, F: Fn(u32) -> ValueSlot> BytecodeWriter<'a, F> {
     }
 }
 
-/// Calls `visit` for every operand of the steps.
+/// Calls `visit` for every operand of the steps, in branches too.
 pub fn visit_operands(steps: &[CodeStep], visit: &mut impl FnMut(RegisterOperand)) {
     for step in steps {
         match step {
@@ -368,6 +433,7 @@ pub fn visit_operands(steps: &[CodeStep], visit: &mut impl FnMut(RegisterOperand
     }
 }
 
+/// The operation of a function of one argument.
 fn unary(op: UnaryFunction) -> BytecodeOperation {
     match op {
         UnaryFunction::Neg => BytecodeOperation::Neg,
@@ -391,6 +457,7 @@ fn unary(op: UnaryFunction) -> BytecodeOperation {
     }
 }
 
+/// The operation of a function of two arguments.
 fn binary(op: BinaryFunction) -> BytecodeOperation {
     match op {
         BinaryFunction::Add => BytecodeOperation::Add,
@@ -406,6 +473,7 @@ fn binary(op: BinaryFunction) -> BytecodeOperation {
     }
 }
 
+/// The operation of a relation.
 fn relation(rel: RelationalOp) -> BytecodeOperation {
     match rel {
         RelationalOp::Lt => BytecodeOperation::Lt,

@@ -1,39 +1,51 @@
-//! Where every number lives: one flat array per run.
+//! The layout of the array of values: one flat array of `f64` per run.
+//!
+//! `lower` makes it; kernels address all their inputs and outputs by slots of it.
 
 use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_model::structure::{BltBlock, Dae, Unknown};
 use rustc_hash::FxHashMap;
 
-/// A place in the array of values. Byte offsets of slots fit into 32 bits.
+/// An index into the array of values. Byte offsets of slots fit into 31 bits.
 pub type ValueSlot = u32;
 
+/// No slot.
 const NONE: ValueSlot = ValueSlot::MAX;
 
-/// The slots of a model. One array of [`ValueLayout::len`] numbers holds everything that kernels read and write: what the
-/// run says (time, homotopy, phase), variables, derivatives, values before the event, numbers of the text, and work.
+/// The slots of a model.
+///
+/// One array of [`ValueLayout::len`] numbers holds everything that kernels read and write. In order: time and flags of
+/// the run, variables, then derivatives, `pre` values, constants and work slots as they were needed, scratch at the
+/// end.
 #[derive(Clone, Debug)]
 pub struct ValueLayout {
+    /// For each variable the slot of its derivative, or `NONE`.
     der: Vec<ValueSlot>,
+    /// For each variable the slot of its value before the event, or `NONE`.
     pre: Vec<ValueSlot>,
+    /// The slot of each constant, by its bits.
     numbers: FxHashMap<u64, ValueSlot>,
+    /// Slots with values that a fresh array must hold.
     preset: Vec<(ValueSlot, f64)>,
+    /// Number of slots so far.
     len: u32,
 }
 
 impl ValueLayout {
-    /// Simulated time, s.
+    /// Slot of the simulated time in seconds.
     pub const TIME: usize = 0;
-    /// Homotopy parameter of the initial system: 0 simplified, 1 actual.
+    /// Slot of the homotopy parameter of the initial system: 0 is the simplified system, 1 the actual one.
     pub const LAMBDA: usize = 1;
-    /// 1 during initialization, else 0.
+    /// Slot of `initial()`: 1 during initialization, else 0.
     pub const INITIAL: usize = 2;
-    /// 1 at the end of a successful run, else 0.
+    /// Slot of `terminal()`: 1 at the end of a successful run, else 0.
     pub const TERMINAL: usize = 3;
-    /// The solver's `cj`, for Jacobians.
+    /// Slot of the factor `cj` in the Jacobian.
     pub(super) const CJ: usize = 4;
+    /// Slot of the first variable.
     const VARIABLES: u32 = 5;
 
-    /// The slots of the variables of `dae`, of all derivatives and of all values before events that occur in it.
+    /// Gives slots to all variables of `dae`, and to all derivatives, `pre` values and constants that occur in it.
     pub fn new(dae: &Dae) -> ValueLayout {
         let variables = u32::try_from(dae.variables.len()).expect("fewer than 2^32 variables");
         let mut layout = ValueLayout {
@@ -58,7 +70,7 @@ impl ValueLayout {
         self.len as usize
     }
 
-    /// Never: time and its companions are always there.
+    /// Always false: the slots of time and flags always exist.
     pub fn is_empty(&self) -> bool {
         false
     }
@@ -68,12 +80,12 @@ impl ValueLayout {
         Self::VARIABLES as usize + v.index()
     }
 
-    /// The slot of a variable's time derivative, if the model mentions it.
+    /// The slot of a variable's time derivative; `None` where the model does not use it.
     pub fn der(&self, v: VarId) -> Option<usize> {
         existing(self.der[v.index()])
     }
 
-    /// The slot of a variable's value before the event, if it is discrete or the model mentions it.
+    /// The slot of a variable's value before the event; `None` where it is neither discrete nor used.
     pub fn pre(&self, v: VarId) -> Option<usize> {
         existing(self.pre[v.index()])
     }
@@ -91,7 +103,7 @@ impl ValueLayout {
         }
     }
 
-    /// A fresh array: the numbers of the text are in place, the homotopy parameter is 1, all else is 0.
+    /// A fresh array: constants are in place, the homotopy parameter is 1, all else is 0.
     pub fn values(&self) -> Vec<f64> {
         let mut values = vec![0.0; self.len()];
         for &(slot, number) in &self.preset {
@@ -100,7 +112,7 @@ impl ValueLayout {
         values
     }
 
-    /// The slot that a leaf of an expression reads; `None` for what is not a leaf.
+    /// The slot that a leaf of an expression reads; `None` for other nodes and for leaves without a slot.
     pub(super) fn leaf(&self, node: ExprNode) -> Option<ValueSlot> {
         let found = match node {
             ExprNode::Num(bits) => *self.numbers.get(&bits)?,
@@ -115,7 +127,7 @@ impl ValueLayout {
         (found != NONE).then_some(found)
     }
 
-    /// The slot that always holds this number.
+    /// The slot that always holds this number. A new slot is made where there is none.
     pub(super) fn number(&mut self, value: f64) -> ValueSlot {
         if let Some(&found) = self.numbers.get(&value.to_bits()) {
             return found;
@@ -126,12 +138,12 @@ impl ValueLayout {
         fresh
     }
 
-    /// The slot of a number that is known to have one.
+    /// The slot of the number with these bits; `None` where there is none.
     pub(super) fn known_number(&self, bits: u64) -> Option<ValueSlot> {
         self.numbers.get(&bits).copied()
     }
 
-    /// The first of `count` new neighbouring slots.
+    /// Adds `count` neighbouring slots and returns the first.
     pub(super) fn work(&mut self, count: usize) -> ValueSlot {
         let first = self.len;
         self.len += slot(count);
@@ -139,18 +151,21 @@ impl ValueLayout {
         first
     }
 
+    /// Gives a derivative a slot, unless it has one.
     fn add_der(&mut self, v: VarId) {
         if self.der[v.index()] == NONE {
             self.der[v.index()] = self.work(1);
         }
     }
 
+    /// Gives a value before the event a slot, unless it has one.
     fn add_pre(&mut self, v: VarId) {
         if self.pre[v.index()] == NONE {
             self.pre[v.index()] = self.work(1);
         }
     }
 
+    /// Gives slots to all derivatives that a block solves for.
     fn add_unknowns(&mut self, block: &BltBlock) {
         let mut add = |unknown: Unknown| {
             if let Unknown::Der(v) = unknown {
@@ -170,6 +185,7 @@ impl ValueLayout {
         }
     }
 
+    /// Gives slots to all derivatives, `pre` values and constants in the pool of expressions.
     fn add_leaves(&mut self, exprs: &Exprs) {
         for id in 0..exprs.len() {
             match exprs.node(ExprId(slot(id))) {
@@ -189,6 +205,7 @@ pub(super) fn slot(index: usize) -> ValueSlot {
     ValueSlot::try_from(index).expect("fewer than 2^32 slots")
 }
 
+/// `None` for the missing slot.
 fn existing(slot: ValueSlot) -> Option<usize> {
     (slot != NONE).then_some(slot as usize)
 }

@@ -1,8 +1,11 @@
-//! From the sorted DAE to a [`ExecutableSystem`]: programs over one flat array of values for the residual, its exact sparse
-//! Jacobian, zero crossings, outputs, events and the start.
+//! Lowering: from the sorted DAE to an [`ExecutableSystem`], whose programs compute over one flat array of values.
 //!
-//! [`lower`] is the entry. How the array is laid out says [`ValueLayout`]; which explicit variables IDA never sees says
-//! `eliminate`; how equal expressions share one kernel says `shape`.
+//! [`lower`] is the entry; `circuit` and `analysis` call it once per model. `eliminate` decides which explicit
+//! variables IDA sees as unknowns. `shape` turns expressions into kernels, so that equal expressions share code.
+//! `continuous`, `blocks`, `conditions` and `parameters` collect the definitions of each program, `jacobian`
+//! differentiates them by the chain rule. `program` orders definitions and merges them into loops and straight code.
+//! `code` is the common intermediate form, which `interpret` runs as bytecode and `native` compiles with Cranelift
+//! (`translate`). [`ValueLayout`] gives every number its place in the array.
 
 mod blocks;
 mod code;
@@ -40,14 +43,16 @@ use shape::{KernelShaper, KernelTable};
 use std::sync::Arc;
 use system::SystemPrograms;
 
-/// How to lower.
+/// Options of [`lower`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LoweringOptions {
-    /// Compile to machine code what runs often enough to pay for it; else everything is interpreted. Both give the same
-    /// bits.
+    /// Whether programs that run often enough to pay for it are compiled to machine code. Interpreter and machine code
+    /// give the same bits.
     pub native: bool,
-    /// Integrate conserved quantities where the model states them (`Dae::conserved`), and let the states follow. Not for
-    /// callers who integrate the states themselves or carry sensitivities along.
+    /// Whether conserved quantities (`Dae::conserved`) are integrated in place of their states, which then follow from
+    /// them.
+    ///
+    /// Must be false for callers that integrate the states themselves or compute sensitivities.
     pub conserve: bool,
 }
 
@@ -58,69 +63,69 @@ impl Default for LoweringOptions {
 }
 
 impl LoweringOptions {
-    /// Interpreted only: for models that run once.
+    /// Interpreter only: for models that run once.
     pub const INTERPRETED: LoweringOptions = LoweringOptions { native: false, conserve: true };
 }
 
-/// A value that is not finite came out. [`ExecutableSystem::trap`] finds where it was made.
+/// A computed value is not finite. [`ExecutableSystem::trap`] finds the operation that made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NonFinite;
 
-/// An unknown of the IDA system.
+/// An unknown of the IDA system: one column of the Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UnknownColumn {
-    /// The variable.
+    /// The variable whose value the column holds.
     pub variable: VarId,
-    /// What it is to the integrator.
+    /// How the integrator treats it.
     pub role: ColumnRole,
 }
 
-/// What an unknown is to the integrator.
+/// How the integrator treats an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnRole {
-    /// A state that is integrated.
+    /// A state that is integrated: its derivative stands in the equations.
     State,
-    /// A state that follows from a conserved quantity.
+    /// A state whose value follows from a conserved quantity.
     Following,
     /// A conserved quantity: integrated, but no state of the model.
     Quantity,
-    /// An algebraic unknown.
+    /// An algebraic unknown: a tearing variable of a loop, or an explicit variable that is kept.
     Algebraic,
 }
 
 impl UnknownColumn {
-    /// A state of the model.
+    /// Whether it is a state of the model, integrated or following.
     pub fn is_state(&self) -> bool {
         matches!(self.role, ColumnRole::State | ColumnRole::Following)
     }
 
-    /// Its derivative stands in the equations.
+    /// Whether its derivative stands in the equations.
     pub fn is_differential(&self) -> bool {
         matches!(self.role, ColumnRole::State | ColumnRole::Quantity)
     }
 }
 
-/// A conserved quantity that is integrated.
+/// A conserved quantity that is integrated, such as the mass of oil in a volume, and the state that follows from it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ConservedIntegral {
     /// The column of the quantity.
     pub column: usize,
-    /// The column of the state that follows from it.
+    /// The column of the state that follows from it; the row of the same number determines it.
     pub state: usize,
-    /// The slot of the quantity as it is by the states.
+    /// The slot of the quantity as computed from the states.
     pub slot: ValueSlot,
-    /// The slot of its derivative by the state that follows, as far as it is known.
+    /// The slot of its derivative with respect to the following state, from the last Jacobian.
     pub slope: ValueSlot,
-    /// Where that derivative stands in the Jacobian, with the sign turned; `None` where it vanishes.
+    /// Index of that derivative in the Jacobian, where it has the opposite sign; `None` where it vanishes.
     pub entry: Option<usize>,
-    /// The entries of its row there.
+    /// Indices of all entries of the state's row in the Jacobian.
     pub row: Vec<usize>,
 }
 
-/// Compressed sparse columns: rows of column `j` are `rowidx[colptr[j]..colptr[j + 1]]`, ascending.
+/// Compressed sparse columns: the rows of column `j` are `rowidx[colptr[j]..colptr[j + 1]]`, ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SparsityPattern {
-    /// Rows and columns.
+    /// Number of rows and of columns.
     pub n: usize,
     /// `n + 1` positions in `rowidx`.
     pub colptr: Vec<usize>,
@@ -138,65 +143,69 @@ impl SparsityPattern {
 /// One explicit assignment inside a [`BlockCode`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AssignTarget {
-    /// What is computed.
+    /// The variable or derivative that is computed.
     pub unknown: Unknown,
     /// Its slot.
     pub slot: usize,
-    /// Index into `Dae::equations`.
+    /// The equation it comes from, as an index into `Dae::equations`.
     pub equation: u32,
-    /// The value's expression, for [`ExecutableSystem::trap`].
+    /// The expression of its value, for [`ExecutableSystem::trap`].
     pub value: ExprId,
 }
 
 /// Explicit assignments in order, as one program.
 ///
-/// Modes of crossings stand alone: a program that computes modes computes nothing else, and none of its modes reads
+/// Modes of crossings are separate: a program that computes modes computes nothing else, and none of its modes reads
 /// another of them. The solver corrects a mode after its program has run (a relation that has just crossed zero keeps
-/// its new value, whatever the rounding), and what follows must read the corrected value.
+/// its new value, whatever the rounding), and later programs must read the corrected value.
 #[derive(Clone, Debug)]
 pub struct AssignCode {
-    /// What it computes, in order.
+    /// The assignments, in order.
     pub targets: Vec<AssignTarget>,
-    /// Computes all targets from the slots of what came before.
+    /// Computes all targets from slots computed earlier.
     pub program: Program,
 }
 
-/// An algebraic loop. Set the tearing slots, run `residual`, read the residual slots; for Newton run `jacobian` after
-/// that and read the matrix of d residual / d tearing from its slots.
+/// An algebraic loop with n tearing unknowns and n residuals.
+///
+/// To evaluate it, set the tearing slots, run `residual`, and read the residual slots. For Newton's method run
+/// `jacobian` after that and read the matrix d residual / d tearing from its slots.
 #[derive(Clone, Debug)]
 pub struct LoopCode {
-    /// Iteration unknowns.
+    /// The iteration unknowns.
     pub tearing: Vec<Unknown>,
     /// The slot of each tearing unknown.
     pub tearing_slots: Vec<usize>,
-    /// Variables that follow explicitly.
+    /// Variables of the loop that follow explicitly from the tearing unknowns.
     pub inner: Vec<AssignTarget>,
-    /// The slot of each residual, as many as tearing unknowns.
+    /// The slot of each residual.
     pub residual_slots: Vec<usize>,
-    /// The expression of each residual and its equation (index into `Dae::equations`).
+    /// The expression of each residual, and its equation as an index into `Dae::equations`.
     pub residuals: Vec<(ExprId, u32)>,
     /// Computes inner variables and residuals.
     pub residual: Program,
-    /// Structure of the matrix: rows are residuals, columns are tearing unknowns.
+    /// Pattern of the n x n matrix: rows are residuals, columns are tearing unknowns.
     pub pattern: SparsityPattern,
     /// Computes inner variables, and the matrix into `jacobian_slots`.
     pub jacobian: Program,
     /// The slot of each entry of `pattern`.
     pub jacobian_slots: Vec<usize>,
-    /// The residuals are affine in the tearing unknowns: one Newton step solves them.
+    /// Whether the residuals are affine in the tearing unknowns, so that one Newton step solves them.
     pub linear: bool,
 }
 
-/// A loop through discrete equations: solve `continuous`, run `discrete`, until no discrete value changes.
+/// A loop through discrete equations.
+///
+/// The solver repeats `continuous` and `discrete` until no discrete value changes.
 #[derive(Clone, Debug)]
 pub struct MixedCode {
-    /// With discrete values frozen; `Assign` and `KernelLoop` only.
+    /// The continuous blocks, with discrete values frozen. Contains `Assign` and `Loop` only.
     pub continuous: Vec<BlockCode>,
-    /// The discrete equations, in order; several programs because modes stand alone.
+    /// The discrete equations in order; several programs because modes are separate.
     pub discrete: Vec<AssignCode>,
 }
 
-/// A step of the event or initial system.
+/// One step of the event system or of the initial system.
 #[derive(Clone, Debug)]
 pub enum BlockCode {
     /// Neighbouring explicit assignments of the sorted system, joined.
@@ -212,52 +221,55 @@ pub enum BlockCode {
 pub struct ConditionProgram {
     /// Computes all slots below from the slots of variables.
     pub program: Program,
-    /// Per entry of `Dae::actions` whether it fires (not 0), or per entry of `Dae::asserts` whether it holds (not 0).
+    /// One slot per entry of `Dae::actions` (not 0: it fires) or of `Dae::asserts` (not 0: it holds).
     pub holds: Vec<usize>,
-    /// Per action the new value of a `reinit` or the condition of an `assert`; `None` for `terminate` and for asserts
-    /// outside `when`.
+    /// One entry per action: the slot of the new value of a `reinit`, or of the condition of an `assert`.
+    ///
+    /// `None` for `terminate` and for assertions outside `when`.
     pub value: Vec<Option<usize>>,
 }
 
 /// A row of the IDA system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ResidualRow {
-    /// Index into `Dae::equations`.
+    /// The equation it comes from, as an index into `Dae::equations`.
     pub equation: u32,
-    /// What it was made for.
+    /// The form of the row.
     pub kind: ResidualRowKind,
-    /// The right side, or the residual: for [`ExecutableSystem::trap`].
+    /// The right side, or the residual, for [`ExecutableSystem::trap`].
     pub value: ExprId,
 }
 
-/// What a row of the IDA system was made for.
+/// The form of a row of the IDA system. Row i belongs to column i.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ResidualRowKind {
-    /// `der(x) - value` for the state of the column with the row's own number.
+    /// `der(x) - value` for the state or conserved quantity of the same column.
     Derivative,
-    /// `v - value` for the algebraic unknown of the column with the row's own number.
+    /// `v - value` for the algebraic unknown of the same column.
     Explicit,
-    /// `x - solution` for the state of the row's own number: the solution has the quantity of this column.
+    /// `x - solution` for the state of the same column; at the solution the quantity of the given column has its value.
     Follows(usize),
     /// The residual of a loop.
     Residual,
 }
 
-/// Lowers a model.
+/// Lowers a model for integration.
 pub fn lower(dae: Arc<Dae>, options: &LoweringOptions) -> ExecutableSystem {
     let layout = ValueLayout::new(&dae);
     let plan = eliminate::plan(&dae, &layout, true, options.conserve);
     lower_planned(dae, layout, plan, options)
 }
 
-/// Lowers a model for evaluation point by point: all that is explicit stays so, however much it fills the Jacobian,
-/// because nobody factorises it.
+/// Lowers a model for evaluation point by point.
+///
+/// All explicit variables stay explicit, however much they fill the Jacobian, because nobody factorizes it.
 pub fn lower_explicit(dae: Arc<Dae>, options: &LoweringOptions) -> ExecutableSystem {
     let layout = ValueLayout::new(&dae);
     let plan = eliminate::plan(&dae, &layout, false, false);
     lower_planned(dae, layout, plan, options)
 }
 
+/// Lowers a model whose IDA unknowns are planned already.
 fn lower_planned(
     dae: Arc<Dae>,
     layout: ValueLayout,
@@ -267,27 +279,39 @@ fn lower_planned(
     let mut shaper = KernelShaper::new(&dae, layout);
     let drafts = ProgramDrafts::new(&dae, &plan, &mut shaper);
     let KernelShaper { kernels, mut layout, .. } = shaper;
+    // derivatives contain numbers that the model does not: they get slots before the code is made
     kernels.numbers().for_each(|number| {
         layout.number(number);
     });
     drafts.assemble(dae, plan, layout, kernels, options)
 }
 
-/// The definitions of all programs, before the programs are made: code needs to know all slots.
+/// The definitions of all programs. Programs are made afterwards, because code needs to know all slots.
 struct ProgramDrafts {
+    /// Parameters with bindings, and their definitions.
     bindings: (Vec<VarId>, KernelDefinitions),
+    /// Residual and Jacobian.
     continuous: ContinuousDraft,
+    /// Everything that follows explicitly from the unknowns.
     observables: Observables,
+    /// Root functions.
     crossings: CrossingsDraft,
+    /// Conserved quantities and their rates.
     quantities: QuantitiesDraft,
+    /// Actions of `when` clauses.
     actions: ConditionsDraft,
+    /// Assertions outside `when`.
     asserts: ConditionsDraft,
+    /// Blocks of the event system.
     event: Vec<blocks::BlockDraft>,
+    /// Blocks of the initial system.
     initial: Vec<blocks::BlockDraft>,
+    /// Subexpressions that depend on parameters alone.
     hoisted: KernelDefinitions,
 }
 
 impl ProgramDrafts {
+    /// Collects all definitions.
     fn new(dae: &Dae, plan: &ContinuousPlan, shaper: &mut KernelShaper) -> ProgramDrafts {
         let inline = FxHashMap::default();
         let modes = dae.crossings.iter().map(|crossing| crossing.mode).collect();
@@ -300,6 +324,7 @@ impl ProgramDrafts {
         let asserts = conditions::asserts(dae, shaper);
         let event = blocks::BlockDrafter::new(shaper, false, &inline, &modes).blocks(&dae.event);
         let initial = blocks::BlockDrafter::new(shaper, true, &inline, &modes).blocks(&dae.initial);
+        // last, because the definitions above decide which parts are hoisted
         let hoisted = shaper.hoisted_definitions();
         ProgramDrafts {
             bindings,
@@ -315,6 +340,7 @@ impl ProgramDrafts {
         }
     }
 
+    /// Makes all programs and compiles what must be compiled before the first run.
     fn assemble(
         self,
         dae: Arc<Dae>,
@@ -337,6 +363,7 @@ impl ProgramDrafts {
 
         let mut assembler = ProgramAssembler::new(&kernels, &layout, options.native);
         let by_need = DefinitionOrder::Dependency;
+        // residual and crossings run at every step, the Jacobian less often
         assembler.often(true);
         programs.residual = assembler.assemble(&self.continuous.residual, by_need, None);
         let with_observables = self.observables.before(&kernels, &self.crossings.defs);
@@ -362,6 +389,7 @@ impl ProgramDrafts {
         programs.observables = self.observables;
         programs.hoisted = assembler.assemble(&self.hoisted, by_need, None);
         let initial = blocks::assemble(self.initial, &mut assembler);
+        // all kernels are compiled in one module
         let (entries, loops) = assembler.compile(&programs.functions);
         programs.loops = Arc::new(loops);
         programs.native = options.native;
@@ -387,7 +415,7 @@ impl ProgramDrafts {
     }
 }
 
-/// With the places of the derivatives in the Jacobian.
+/// Adds to each conserved quantity the indices of its row in the Jacobian.
 fn located(mut integrals: Vec<ConservedIntegral>, pattern: &SparsityPattern) -> Vec<ConservedIntegral> {
     let of_row: FxHashMap<usize, usize> =
         integrals.iter().enumerate().map(|(i, integral)| (integral.state, i)).collect();
@@ -404,12 +432,15 @@ fn located(mut integrals: Vec<ConservedIntegral>, pattern: &SparsityPattern) -> 
     integrals
 }
 
+/// Slots of alias and target, and whether the alias has the opposite sign.
 fn alias_slots(dae: &Dae, layout: &ValueLayout) -> Vec<(ValueSlot, ValueSlot, bool)> {
     let place = |v| slot(layout.var(v));
     dae.aliases.iter().map(|a| (place(a.variable), place(a.target), a.negated)).collect()
 }
 
-/// Per variable: a parameter with a binding that depends on one found by the initial system.
+/// For each variable whether it is a parameter whose binding depends on one found by the initial system.
+///
+/// Empty where the initial system finds no parameters.
 fn late_parameters(dae: &Dae) -> Vec<bool> {
     if dae.free_parameters.is_empty() {
         return Vec::new();

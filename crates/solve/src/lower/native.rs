@@ -1,8 +1,9 @@
-//! Machine code by Cranelift: the same steps as the interpreter, to the bit.
+//! Machine code by Cranelift, with the same results as the interpreter to the bit.
 //!
-//! The only place of this folder with `unsafe`: calling the code, and freeing its memory. Why the calls are sound: code
-//! reads and writes the array of values only at slots of the layout it was made for ([`NativeEntry`] is run by
-//! `Program::run`, which checks the array's length), and the memory lives as long as any [`NativeEntry`] does.
+//! `program` orders code from a [`NativeCompiler`] and runs the resulting [`NativeEntry`]. `translate` writes the
+//! instructions. This is the only file of this folder with `unsafe`: it calls the code and frees its memory. The calls
+//! are safe because the code accesses the array of values only at slots of its layout (`Program::run` checks the
+//! length of the array), and because the memory lives as long as any [`NativeEntry`].
 
 use super::code::KernelCode;
 use super::layout::ValueSlot;
@@ -17,22 +18,24 @@ use cranelift_module::{FuncId, Linkage, Module, ModuleError, default_libcall_nam
 use rustc_hash::FxHashMap;
 use std::sync::Arc;
 
-/// What making code gives.
+/// The result of building code.
 type ModuleResult<T> = Result<T, Box<ModuleError>>;
 
-/// Values, table, number of rows, functions.
+/// The signature of all compiled functions: values, table, number of rows, user functions.
 type NativeFunction = unsafe extern "C" fn(*mut f64, *const ValueSlot, usize, *const FunctionList);
 
-/// Code in executable memory.
+/// One compiled function in executable memory.
 #[derive(Clone, Debug)]
 pub struct NativeEntry {
+    /// Its address.
     function: NativeFunction,
-    /// Keeps the code alive.
+    /// Keeps the memory of the code alive.
     _memory: Arc<ExecutableMemory>,
 }
 
-/// The user's functions, for calls out of machine code.
+/// The user's functions, as machine code passes them back to [`call_function`].
 struct FunctionList<'a> {
+    /// The functions, by their numbers in calls.
     functions: &'a [Function],
 }
 
@@ -42,11 +45,12 @@ impl NativeEntry {
         self.call(values, &[], 0, functions);
     }
 
-    /// Runs a loop over the rows of `table`.
+    /// Runs a loop over the rows of `table`, each of `width` slots.
     pub fn run_table(&self, values: &mut [f64], table: &[ValueSlot], width: usize, functions: &[Function]) {
         self.call(values, table, table.len() / width, functions);
     }
 
+    /// Calls the machine code.
     #[allow(unsafe_code, reason = "machine code is called here and nowhere else")]
     fn call(&self, values: &mut [f64], table: &[ValueSlot], rows: usize, functions: &[Function]) {
         let list = FunctionList { functions };
@@ -56,8 +60,9 @@ impl NativeEntry {
     }
 }
 
-/// Owns executable memory.
+/// Owner of executable memory.
 struct ExecutableMemory {
+    /// The module that holds the memory; `None` only while it is dropped.
     module: Option<JITModule>,
 }
 
@@ -76,6 +81,7 @@ unsafe impl Send for ExecutableMemory {}
 unsafe impl Sync for ExecutableMemory {}
 
 impl Drop for ExecutableMemory {
+    /// Frees the memory, which the module does not do by itself.
     #[allow(unsafe_code, reason = "the memory is freed here and nowhere else")]
     fn drop(&mut self) {
         if let Some(module) = self.module.take() {
@@ -85,56 +91,63 @@ impl Drop for ExecutableMemory {
     }
 }
 
-/// Which of the ordered codes a program wants.
+/// The number of an order, by which the compiled function is found.
 #[derive(Clone, Copy, Debug)]
 pub struct CodeTicket(usize);
 
 impl CodeTicket {
-    /// The place of its entry in the result of [`NativeCompiler::compile`].
+    /// The index of its entry in the result of [`NativeCompiler::compile`].
     pub fn index(self) -> usize {
         self.0
     }
 }
 
+/// One function to be compiled.
 #[derive(Debug)]
 enum NativeJob {
+    /// Straight code with the slots of its outputs.
     Straight { code: Arc<KernelCode>, targets: Vec<ValueSlot> },
+    /// A loop over a table, with the number of inputs of a row.
     Loop { code: Arc<KernelCode>, inputs: u32 },
 }
 
-/// Collects codes to be compiled together.
+/// Collects code that is compiled together.
 #[derive(Debug, Default)]
 pub struct NativeCompiler {
+    /// What has been ordered.
     jobs: Vec<NativeJob>,
 }
 
 impl NativeCompiler {
-    /// Code whose inputs are slots and whose outputs go to `targets`.
+    /// Orders code whose inputs are slots and whose outputs go to `targets`.
     pub fn order_straight(&mut self, code: Arc<KernelCode>, targets: Vec<ValueSlot>) -> CodeTicket {
         self.order(NativeJob::Straight { code, targets })
     }
 
-    /// Code for a loop over a table whose rows hold the slots of inputs and outputs.
+    /// Orders a loop over a table whose rows hold the slots of inputs and outputs.
     pub fn order_loop(&mut self, code: Arc<KernelCode>, inputs: u32) -> CodeTicket {
         self.order(NativeJob::Loop { code, inputs })
     }
 
-    /// True when nothing was ordered.
+    /// Whether nothing was ordered.
     pub fn is_empty(&self) -> bool {
         self.jobs.is_empty()
     }
 
+    /// Adds an order.
     fn order(&mut self, job: NativeJob) -> CodeTicket {
         self.jobs.push(job);
         CodeTicket(self.jobs.len() - 1)
     }
 
-    /// Machine code for everything that was ordered, in that order; nothing where the machine is not supported, and
-    /// all is then interpreted.
+    /// Compiles everything that was ordered, in that order.
+    ///
+    /// Empty where Cranelift does not support the machine or fails; everything is then interpreted.
     pub fn compile(&self, functions: &[Function]) -> Vec<NativeEntry> {
         self.try_compile(functions).unwrap_or_default()
     }
 
+    /// As [`NativeCompiler::compile`], with the error of Cranelift.
     fn try_compile(&self, functions: &[Function]) -> ModuleResult<Vec<NativeEntry>> {
         if self.jobs.is_empty() || !SUPPORTED {
             return Ok(Vec::new());
@@ -149,9 +162,10 @@ impl NativeCompiler {
     }
 }
 
-/// Whether Cranelift knows this machine.
+/// Whether Cranelift supports this processor.
 const SUPPORTED: bool = cfg!(any(target_arch = "x86_64", target_arch = "aarch64"));
 
+/// Settings of Cranelift.
 const FLAGS: [(&str, &str); 5] = [
     ("opt_level", "speed"),
     ("is_pic", "false"),
@@ -160,18 +174,22 @@ const FLAGS: [(&str, &str); 5] = [
     ("unwind_info", "false"),
 ];
 
-/// A function called from machine code.
+/// A function that machine code calls.
 struct NativeImport {
+    /// Its name in the module.
     name: &'static str,
+    /// Its address.
     address: fn() -> *const u8,
     /// Number of arguments; 0 for [`call_function`].
     arguments: usize,
 }
 
+/// A function of floating-point numbers.
 const fn import(name: &'static str, arguments: usize, address: fn() -> *const u8) -> NativeImport {
     NativeImport { name, address, arguments }
 }
 
+/// All imported functions. They are the same as in the interpreter, so that the bits agree.
 const IMPORTS: &[NativeImport] = &[
     import("exp", 1, || math::exp as *const u8),
     import("log", 1, || math::log as *const u8),
@@ -194,31 +212,38 @@ const IMPORTS: &[NativeImport] = &[
 /// The name of [`call_function`] in machine code.
 pub const CALL_FUNCTION: &str = "call_function";
 
-/// A call of a user function out of machine code.
+/// Calls a user function from machine code.
 #[allow(unsafe_code, reason = "raw pointers come from machine code")]
 unsafe extern "C" fn call_function(list: *const FunctionList, function: u32, args: *const f64, out: *mut f64) {
-    // SAFETY: `list` is the one that `NativeEntry::call` passed in; machine code passes stack slots of the function's number
-    // of inputs and outputs.
+    // SAFETY: `list` is the one that `NativeEntry::call` passed in; machine code passes stack slots of the function's
+    // number of inputs and outputs.
     unsafe {
         let functions = (*list).functions;
         let function = &functions[function as usize];
         let args = std::slice::from_raw_parts(args, function.inputs as usize);
         let out = std::slice::from_raw_parts_mut(out, function.outputs.len());
+        // an output that the function does not set stays NaN, which the solver detects
         out.fill(f64::NAN);
         function.call(functions, args, out);
     }
 }
 
-/// Defines functions in a module.
+/// Builds the functions of one module.
 struct NativeModuleBuilder<'f> {
+    /// The module.
     module: JITModule,
+    /// The user's functions.
     functions: &'f [Function],
+    /// Workspace of Cranelift, reused for all functions.
     context: FunctionBuilderContext,
+    /// The imported functions by name.
     imports: FxHashMap<&'static str, FuncId>,
+    /// The type of pointers.
     pointer: Type,
 }
 
 impl<'f> NativeModuleBuilder<'f> {
+    /// Declares all imports.
     fn new(mut module: JITModule, functions: &'f [Function]) -> ModuleResult<Self> {
         let pointer = module.target_config().pointer_type();
         let mut imports = FxHashMap::default();
@@ -229,6 +254,7 @@ impl<'f> NativeModuleBuilder<'f> {
         Ok(NativeModuleBuilder { module, functions, context: FunctionBuilderContext::new(), imports, pointer })
     }
 
+    /// Compiles one function.
     fn define(&mut self, job: &NativeJob) -> ModuleResult<FuncId> {
         let mut context = self.module.make_context();
         for _ in 0..4 {
@@ -249,6 +275,7 @@ impl<'f> NativeModuleBuilder<'f> {
         Ok(id)
     }
 
+    /// Makes the code executable and returns the entry of each function.
     #[allow(unsafe_code, reason = "an address becomes a function")]
     fn finish(mut self, ids: &[FuncId]) -> ModuleResult<Vec<NativeEntry>> {
         self.module.finalize_definitions()?;
@@ -263,6 +290,7 @@ impl<'f> NativeModuleBuilder<'f> {
     }
 }
 
+/// The signature of an imported function.
 fn import_signature(module: &JITModule, pointer: Type, arguments: usize) -> Signature {
     let mut signature = module.make_signature();
     if arguments == 0 {

@@ -1,4 +1,7 @@
-//! Parameters from their bindings, one by one so that any of them can be overridden.
+//! Evaluation of parameters from their bindings, one by one, so that each of them can be overridden.
+//!
+//! [`draft`] collects the bindings, [`BindingEvaluator`] runs them. It is called once per set of parameters, so it is
+//! always interpreted.
 
 use super::code::KernelCode;
 use super::interpret::Bytecode;
@@ -10,19 +13,23 @@ use bramah_expr::function::Function;
 use bramah_model::structure::Dae;
 use rustc_hash::FxHashMap;
 
-/// The bindings of all dependent parameters, in order.
+/// The bindings of all parameters that have one, in an order in which each reads earlier ones only.
 #[derive(Clone, Debug, Default)]
 pub struct BindingEvaluator {
+    /// For each parameter its variable, its kernel, and where its slots begin in `table`.
     parameters: Vec<(VarId, KernelId, u32)>,
-    /// Per parameter the slots of the binding's inputs, then its own.
+    /// For each parameter the slots of the binding's inputs, then its own slot.
     table: Vec<ValueSlot>,
+    /// For each kernel the number of its inputs and its code.
     codes: FxHashMap<KernelId, (usize, Bytecode)>,
+    /// First slot of the scratch region.
     scratch: usize,
 }
 
-/// The definitions of `dae.parameters`.
+/// The definitions of `dae.parameters`, and the variables in the same order.
 pub fn draft(dae: &Dae, shaper: &mut KernelShaper) -> (Vec<VarId>, KernelDefinitions) {
     let inline = FxHashMap::default();
+    // nothing is hoisted: hoisted parts are computed from these parameters
     let rules = ShapingRules { initial: false, inline: &inline, hoist: false };
     let (mut variables, mut defs) = (Vec::new(), KernelDefinitions::default());
     for &v in &dae.parameters {
@@ -37,7 +44,7 @@ pub fn draft(dae: &Dae, shaper: &mut KernelShaper) -> (Vec<VarId>, KernelDefinit
 }
 
 impl BindingEvaluator {
-    /// The code of the definitions that [`draft`] made.
+    /// Makes the code of the definitions from [`draft`].
     pub fn new(
         variables: &[VarId],
         defs: &KernelDefinitions,
@@ -58,18 +65,18 @@ impl BindingEvaluator {
         bindings
     }
 
-    /// How many scratch places the code needs.
+    /// Number of scratch places that the code needs.
     pub fn scratch(&self) -> u32 {
         self.codes.values().map(|(_, code)| code.scratch()).max().unwrap_or(0)
     }
 
-    /// Tells where the scratch region begins.
+    /// Sets where the scratch region begins.
     pub fn relocate(&mut self, base: ValueSlot) {
         self.scratch = base as usize;
         self.codes.values_mut().for_each(|(_, code)| code.relocate(base));
     }
 
-    /// Computes those parameters for which `wanted` says true.
+    /// Computes those parameters for which `wanted` returns true.
     pub fn run(&self, functions: &[Function], v: &mut [f64], wanted: impl Fn(VarId) -> bool) {
         for &(parameter, kernel, start) in &self.parameters {
             if !wanted(parameter) {

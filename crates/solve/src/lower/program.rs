@@ -1,7 +1,9 @@
-//! A [`Program`]: kernels over the array of values, run in order.
+//! Programs: kernels over the array of values, run in order.
 //!
-//! Definitions of one shape that do not wait for each other run as one loop over a table of slots; the rest is merged
-//! into straight code of limited size, in which values pass in registers.
+//! Kernel definitions enter [`ProgramAssembler::assemble`]; a [`Program`] leaves it. Definitions of one kernel that do
+//! not depend on each other run as one loop over a table of slots. All others are merged into straight code of limited
+//! size, in which intermediate values stay in registers. Programs start interpreted. Machine code is made when a
+//! program has run often, except for long loops, which are compiled at once.
 
 use super::code::KernelCode;
 use super::interpret::Bytecode;
@@ -15,36 +17,40 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Arc, OnceLock};
 
-/// Straight code is cut when it has this many nodes; machine code is slow to make beyond.
+/// A piece of straight code is closed at this number of nodes. Cranelift's compile time grows more than linearly.
 const STRAIGHT_SIZE: usize = 1200;
 
-/// The same for programs that are made when the scratch region has its size already.
+/// The same limit for programs that are made when the size of the scratch region is already fixed.
 const LATE_STRAIGHT_SIZE: usize = 100;
 
-/// No node needs more scratch places than this: a whole power is written out as up to 7 steps, and its arguments may be
-/// numbers without a slot.
+/// Upper bound of the scratch places that one node needs.
+///
+/// An integer power is written out in up to 7 steps, and its arguments may be numbers without a slot.
 const PLACES_PER_NODE: usize = 12;
 
-/// A shape is run as a loop when it has at least this many instances ...
+/// A kernel runs as a loop when it has at least this many instances ...
 const LOOP_INSTANCES: usize = 4;
 
-/// ... and they have at least this many nodes together.
+/// ... which have at least this many nodes together.
 const LOOP_SIZE: usize = 240;
 
-/// Loops of this many rows are compiled before the first run.
+/// Loops with this many rows are compiled before the first run.
 const ALWAYS_COMPILED: usize = 64;
 
-/// All else is compiled when its program has run this often: interpreting it has then cost about as much as making
-/// machine code would have, so that at most twice is spent of what the better choice would have cost.
+/// Number of runs after which any other code is compiled.
+///
+/// Interpreting has then cost about as much as compiling. The total is at most twice the cost of the better choice.
 const WORTH_COMPILING: u32 = 1000;
 
-/// The same for what runs at every step or sample: it will go on doing so.
+/// The same for programs that run at every step or sample, and so will certainly run often.
 const SOON_COMPILED: u32 = 100;
 
-/// Definitions to be computed: each a kernel with the slots it reads and writes.
+/// A list of definitions, each a kernel with the slots that it reads and writes.
 #[derive(Clone, Debug, Default)]
 pub struct KernelDefinitions {
+    /// For each definition its kernel, and where its slots begin in `slots`.
     items: Vec<(KernelId, u32)>,
+    /// The slots of all definitions: inputs, then targets.
     slots: Vec<ValueSlot>,
 }
 
@@ -54,7 +60,7 @@ impl KernelDefinitions {
         self.push(kernels, vec![shaped.expr], &shaped.inputs, &[target]);
     }
 
-    /// Adds a definition of several slots.
+    /// Adds a definition of several slots, which share one kernel.
     pub fn push(
         &mut self,
         kernels: &mut KernelTable,
@@ -75,17 +81,17 @@ impl KernelDefinitions {
         self.slots.extend_from_slice(&other.slots);
     }
 
-    /// All slots that are read or written.
+    /// All slots that are read or written; a slot may occur more than once.
     pub fn slots(&self) -> &[ValueSlot] {
         &self.slots
     }
 
-    /// How many there are.
+    /// Number of definitions.
     pub fn len(&self) -> usize {
         self.items.len()
     }
 
-    /// The definition with this number: kernel, inputs, targets.
+    /// Kernel, inputs and targets of definition `i`.
     pub fn get(&self, kernels: &KernelTable, i: usize) -> (KernelId, &[ValueSlot], &[ValueSlot]) {
         let (kernel, start) = self.items[i];
         let shape = kernels.get(kernel);
@@ -107,16 +113,17 @@ impl KernelDefinitions {
     }
 }
 
-/// Sums of products: `v[target] = sum of v[a] * v[b]`, from left to right, one after the other.
+/// Sums of products, `v[target] = sum of v[a] * v[b]`, computed one after the other.
 #[derive(Clone, Debug, Default)]
 pub struct ProductSums {
-    /// Per sum, its slot and one past its last factor pair.
+    /// For each sum its slot, and the index one past its last pair of factors.
     pub sums: Vec<(ValueSlot, u32)>,
-    /// The pairs of factors.
+    /// The pairs of factors of all sums.
     pub factors: Vec<(ValueSlot, ValueSlot)>,
 }
 
 impl ProductSums {
+    /// Computes all sums, each from left to right.
     fn run(&self, v: &mut [f64]) {
         let mut start = 0;
         for &(target, end) in &self.sums {
@@ -127,51 +134,71 @@ impl ProductSums {
     }
 }
 
-/// Something to compute, reading and writing slots of one array of values. Cheap to clone; shared between threads.
+/// A computation that reads and writes slots of one array of values. Cheap to clone, shared between threads.
 #[derive(Clone, Debug, Default)]
 pub struct Program {
+    /// What is run, in order.
     steps: Arc<Vec<ProgramStep>>,
+    /// Machine code that is made once the program has run often; `None` where nothing is to be compiled.
     late: Option<Arc<LazyNativeCode>>,
+    /// User functions that the code calls.
     functions: Arc<Vec<Function>>,
+    /// Length that the array of values must have at least.
     len: usize,
 }
 
+/// One step of a program.
 #[derive(Debug)]
 enum ProgramStep {
+    /// Straight code of several definitions.
     Straight { bytecode: Bytecode, native: NativeStatus },
+    /// One kernel for all rows of a table.
     Loop(KernelLoop),
+    /// The sums of the chain rule.
     Products(ProductSums),
 }
 
+/// A kernel that runs once for each row of a table of slots.
 #[derive(Debug)]
 struct KernelLoop {
+    /// The kernel.
     kernel: KernelId,
+    /// Interpreted form, with inputs and outputs in the scratch region.
     bytecode: Bytecode,
+    /// Compiled form.
     native: NativeStatus,
+    /// Number of inputs of a row.
     inputs: usize,
+    /// Number of outputs of a row.
     outputs: usize,
-    /// Per instance its inputs, then its targets.
+    /// For each instance the slots of its inputs, then those of its targets.
     table: Vec<ValueSlot>,
+    /// First slot of the scratch region.
     scratch: usize,
 }
 
+/// The state of the machine code of a step.
 #[derive(Debug)]
 enum NativeStatus {
+    /// Never compiled.
     None,
+    /// Will be compiled before the first run of the system.
     Ordered(CodeTicket),
+    /// Compiled.
     Ready(NativeEntry),
-    /// Among the [`LazyNativeCode`] ones.
+    /// Compiled when the program has run often; an index into [`LazyNativeCode`].
     Late(CodeTicket),
 }
 
 impl NativeStatus {
+    /// Replaces an order by the compiled code. Where nothing was compiled, the step stays interpreted.
     fn finish(&mut self, entries: &[NativeEntry]) {
         if let NativeStatus::Ordered(ticket) = self {
             *self = entries.get(ticket.index()).map_or(NativeStatus::None, |entry| NativeStatus::Ready(entry.clone()));
         }
     }
 
-    /// The machine code, if it has been made.
+    /// The machine code; `None` if it has not been made.
     fn entry<'a>(&'a self, late: &'a [NativeEntry]) -> Option<&'a NativeEntry> {
         match self {
             NativeStatus::Ready(entry) => Some(entry),
@@ -181,27 +208,33 @@ impl NativeStatus {
     }
 }
 
-/// Machine code that is made when its program has run often, by whichever thread comes to it first. Results do not
-/// depend on when that is, for interpreter and machine code agree to the bit.
+/// Machine code that is made when its program has run often, by the thread that reaches the limit first.
+///
+/// The results do not depend on when that happens, because interpreter and machine code agree to the bit.
 #[derive(Debug)]
 struct LazyNativeCode {
+    /// Holds the code to be compiled.
     compiler: NativeCompiler,
+    /// Number of runs so far, of all threads.
     runs: AtomicU32,
-    /// Runs before it is made.
+    /// Number of runs after which the code is compiled.
     limit: u32,
+    /// The compiled code, once it exists.
     entries: OnceLock<Vec<NativeEntry>>,
 }
 
 impl LazyNativeCode {
+    /// Nothing is compiled yet.
     fn new(compiler: NativeCompiler, limit: u32) -> Arc<LazyNativeCode> {
         Arc::new(LazyNativeCode { compiler, runs: AtomicU32::new(0), limit, entries: OnceLock::new() })
     }
 
-    /// Counts a run.
+    /// Counts a run, and returns the machine code if it exists or is due; an empty slice otherwise.
     fn entries(&self, functions: &[Function]) -> &[NativeEntry] {
         if let Some(entries) = self.entries.get() {
             return entries;
         }
+        // relaxed: the exact number of runs does not matter
         if self.runs.fetch_add(1, Ordering::Relaxed) < self.limit {
             return &[];
         }
@@ -210,8 +243,9 @@ impl LazyNativeCode {
 }
 
 impl Program {
-    /// Computes. `values` is an array of the layout the program was made for.
+    /// Runs all steps. `values` must be an array of the layout that the program was made for.
     pub fn run(&self, values: &mut [f64]) {
+        // machine code does not check its slots, so this check must stay
         assert!(values.len() >= self.len, "the array of values belongs to another system");
         let late = self.late.as_ref().map_or(&[] as &[NativeEntry], |late| late.entries(&self.functions));
         for step in self.steps.iter() {
@@ -232,7 +266,7 @@ impl Program {
         self.late.iter().for_each(|late| _ = late.runs.fetch_max(late.limit, Ordering::Relaxed));
     }
 
-    /// True when there is nothing to compute.
+    /// Whether there is nothing to compute.
     pub fn is_empty(&self) -> bool {
         self.steps.is_empty()
     }
@@ -246,12 +280,12 @@ impl Program {
         self.steps.iter().map(size).sum()
     }
 
-    /// Number of loops and pieces of straight code: with equal parts it does not grow with their number.
+    /// Number of loops and pieces of straight code. With equal parts it does not grow with the number of parts.
     pub fn kernels(&self) -> usize {
         self.steps.len()
     }
 
-    /// How many scratch places the interpreter needs.
+    /// Number of scratch places that the interpreter needs.
     pub(super) fn scratch(&self) -> u32 {
         let need = |step: &ProgramStep| match step {
             ProgramStep::Straight { bytecode, .. } | ProgramStep::Loop(KernelLoop { bytecode, .. }) => {
@@ -262,9 +296,9 @@ impl Program {
         self.steps.iter().map(need).max().unwrap_or(0)
     }
 
-    /// Last touch: where the scratch region begins, how long the array is, what has been compiled.
+    /// Completes the program: start of the scratch region, length of the array, user functions and compiled code.
     ///
-    /// Does nothing to a program that has been cloned before.
+    /// Has no effect on the steps of a program that has been cloned before.
     pub(super) fn finish(
         &mut self,
         scratch: ValueSlot,
@@ -293,16 +327,19 @@ impl Program {
 }
 
 impl KernelLoop {
+    /// Number of instances.
     fn rows(&self) -> usize {
         self.table.len() / (self.inputs + self.outputs)
     }
 
+    /// Runs the kernel for all rows.
     fn run(&self, late: &[NativeEntry], functions: &[Function], v: &mut [f64]) {
         if let Some(entry) = self.native.entry(late) {
             return entry.run_table(v, &self.table, self.inputs + self.outputs, functions);
         }
         for row in self.table.chunks_exact(self.inputs + self.outputs) {
             let (inputs, targets) = row.split_at(self.inputs);
+            // the interpreter works on fixed scratch places, so inputs are copied in and outputs are copied out
             for (place, &input) in (self.scratch..).zip(inputs) {
                 v[place] = v[input as usize];
             }
@@ -314,44 +351,53 @@ impl KernelLoop {
     }
 }
 
-/// How many scratch places programs may need that compute some of `defs` and are made after all others.
+/// Upper bound of the scratch places of programs that compute some of `defs` and are made after all others.
 pub fn late_scratch(defs: &KernelDefinitions, kernels: &KernelTable) -> usize {
     let distinct: BTreeSet<KernelId> = defs.items.iter().map(|&(kernel, _)| kernel).collect();
     let size = |&kernel: &KernelId| kernels.pool.reachable(&kernels.get(kernel).outputs, |_| true).len();
     PLACES_PER_NODE * (LATE_STRAIGHT_SIZE + distinct.iter().map(size).max().unwrap_or(0))
 }
 
-/// How definitions are ordered.
+/// How definitions are ordered in a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DefinitionOrder {
-    /// By dependency: each slot is defined before it is read, and equal shapes come together.
+    /// Each slot is defined before it is read; equal kernels come together.
     Dependency,
-    /// As given: slots may be read before they are defined (values of the last turn of an iteration).
+    /// As given. A slot may be read before it is defined: its value is then that of the last iteration.
     Given,
 }
 
-/// Makes programs.
+/// Makes programs from definitions.
 pub struct ProgramAssembler<'a> {
+    /// The kernels of the model.
     kernels: &'a KernelTable,
+    /// The slots of the model.
     layout: &'a ValueLayout,
+    /// The intermediate code of each kernel that has been used.
     codes: FxHashMap<KernelId, Arc<KernelCode>>,
+    /// Loops to be compiled before the first run.
     tickets: BTreeMap<KernelId, CodeTicket>,
+    /// Collects the code to be compiled before the first run.
     compiler: NativeCompiler,
     /// Whether anything is compiled to machine code.
     native: bool,
-    /// What the program that is being made compiles when it has run often.
+    /// Collects the code of the present program that is compiled when the program has run often.
     late: NativeCompiler,
+    /// Loops among that code.
     late_loops: BTreeMap<KernelId, CodeTicket>,
+    /// Number of runs before that code is compiled.
     limit: u32,
+    /// Loops that are compiled already; `None` while the system is made.
     ready: Option<&'a CompiledLoops>,
+    /// Nodes at which a piece of straight code is closed.
     straight_size: usize,
 }
 
-/// Loops in machine code, for programs that are made later.
+/// Compiled loops by kernel, for programs that are made later.
 pub type CompiledLoops = FxHashMap<KernelId, NativeEntry>;
 
 impl<'a> ProgramAssembler<'a> {
-    /// Programs of `kernels` over `layout`; `native`: in machine code where that pays, else interpreted.
+    /// Makes programs of `kernels` over `layout`. With `native`, code is compiled where that pays.
     pub fn new(kernels: &'a KernelTable, layout: &'a ValueLayout, native: bool) -> Self {
         ProgramAssembler {
             kernels,
@@ -368,8 +414,10 @@ impl<'a> ProgramAssembler<'a> {
         }
     }
 
-    /// For programs that are made after all others: with loops that are compiled already, and with pieces of straight
-    /// code so short that [`late_scratch`] suffices.
+    /// Makes programs after all others.
+    ///
+    /// It uses loops that are compiled already. Its pieces of straight code are so short that [`late_scratch`]
+    /// suffices.
     pub fn with_loops(
         kernels: &'a KernelTable,
         layout: &'a ValueLayout,
@@ -383,7 +431,7 @@ impl<'a> ProgramAssembler<'a> {
         }
     }
 
-    /// Compiles what was to be compiled: all of it in the order of tickets, and loops by kernel.
+    /// Compiles what must be compiled before the first run: all code in the order of tickets, and loops by kernel.
     pub fn compile(self, functions: &[Function]) -> (Vec<NativeEntry>, CompiledLoops) {
         let entries = self.compiler.compile(functions);
         let entry = |(&kernel, ticket): (&KernelId, &CodeTicket)| Some((kernel, entries.get(ticket.index())?.clone()));
@@ -391,17 +439,17 @@ impl<'a> ProgramAssembler<'a> {
         (entries, loops)
     }
 
-    /// The kernels that programs are made of.
+    /// The kernels of which programs are made.
     pub fn kernels(&self) -> &'a KernelTable {
         self.kernels
     }
 
-    /// Whether programs made from here on are known to run often.
+    /// Sets whether programs made from now on are known to run often.
     pub fn often(&mut self, often: bool) {
         self.limit = if often { SOON_COMPILED } else { WORTH_COMPILING };
     }
 
-    /// The program that computes `defs`, then `products`.
+    /// Makes the program that computes `defs` and then `products`.
     pub fn assemble(
         &mut self,
         defs: &KernelDefinitions,
@@ -417,6 +465,7 @@ impl<'a> ProgramAssembler<'a> {
                 self.flush(&mut straight, &mut steps);
                 self.push_loop(kernel, inputs, targets, &mut steps);
             } else {
+                // a full piece is closed; so is one that would define a slot twice
                 if !straight.takes(targets, self.straight_size) {
                     self.flush(&mut straight, &mut steps);
                 }
@@ -424,6 +473,7 @@ impl<'a> ProgramAssembler<'a> {
             }
         }
         self.flush(&mut straight, &mut steps);
+        // ordered only now, because the number of rows decides when a loop is compiled
         for step in &mut steps {
             if let ProgramStep::Loop(l) = step {
                 l.native = self.order_loop(l);
@@ -436,13 +486,14 @@ impl<'a> ProgramAssembler<'a> {
         Program { steps: Arc::new(steps), late, ..Program::default() }
     }
 
+    /// The intermediate code of a kernel, made at its first use.
     fn code(&mut self, kernel: KernelId) -> Arc<KernelCode> {
         let kernels = self.kernels;
         let make = || Arc::new(KernelCode::new(&kernels.pool, &kernels.get(kernel).outputs));
         self.codes.entry(kernel).or_insert_with(make).clone()
     }
 
-    /// The kernels that are worth a loop.
+    /// The kernels that run as loops. None where the order of definitions is given.
     fn looped(&mut self, defs: &KernelDefinitions, order: DefinitionOrder) -> FxHashSet<KernelId> {
         let mut counts: FxHashMap<KernelId, usize> = FxHashMap::default();
         if order == DefinitionOrder::Dependency {
@@ -453,7 +504,7 @@ impl<'a> ProgramAssembler<'a> {
         counts.into_keys().collect()
     }
 
-    /// The order of computation: by level, loops before straight code, equal kernels together.
+    /// The order of computation: by level, in each level loops before straight code, equal kernels together.
     fn schedule(&self, defs: &KernelDefinitions, order: DefinitionOrder, looped: &FxHashSet<KernelId>) -> Vec<usize> {
         let mut sequence: Vec<usize> = (0..defs.len()).collect();
         if order == DefinitionOrder::Given || looped.is_empty() {
@@ -472,7 +523,7 @@ impl<'a> ProgramAssembler<'a> {
         sequence
     }
 
-    /// One more than the highest level of what a definition reads.
+    /// The level of each definition: one more than the highest level of what it reads.
     fn levels(&self, defs: &KernelDefinitions) -> Vec<u32> {
         let mut defined = vec![0u32; self.layout.len()];
         let mut levels = Vec::with_capacity(defs.len());
@@ -485,6 +536,7 @@ impl<'a> ProgramAssembler<'a> {
         levels
     }
 
+    /// Adds a row to the last step if that is a loop of this kernel, else starts a new loop.
     fn push_loop(
         &mut self,
         kernel: KernelId,
@@ -514,11 +566,13 @@ impl<'a> ProgramAssembler<'a> {
         }
     }
 
+    /// Orders the machine code of a loop: at once for long loops, otherwise when the program has run often.
     fn order_loop(&mut self, l: &KernelLoop) -> NativeStatus {
         if let Some(entry) = self.ready.and_then(|ready| ready.get(&l.kernel)) {
             return NativeStatus::Ready(entry.clone());
         }
         let code = self.code(l.kernel);
+        // very large kernels would take too long to compile
         if !self.native || code.size > 2 * STRAIGHT_SIZE {
             return NativeStatus::None;
         }
@@ -531,6 +585,7 @@ impl<'a> ProgramAssembler<'a> {
         NativeStatus::Ordered(*self.tickets.entry(l.kernel).or_insert_with(order))
     }
 
+    /// Closes the open piece of straight code and adds it to the steps.
     fn flush(&mut self, straight: &mut StraightLineCode, steps: &mut Vec<ProgramStep>) {
         let StraightLineCode { pool, targets, outputs, .. } = std::mem::take(straight);
         if targets.is_empty() {
@@ -547,22 +602,26 @@ impl<'a> ProgramAssembler<'a> {
     }
 }
 
-/// Straight code that is being collected: expressions whose leaves are slots.
+/// A piece of straight code that is being collected: expressions whose leaves are slots.
 #[derive(Default)]
 struct StraightLineCode {
+    /// Its expressions. Equal ones of different kernels are shared.
     pool: Exprs,
+    /// The slots that it writes.
     targets: Vec<ValueSlot>,
+    /// The expression of each of them.
     outputs: Vec<ExprId>,
-    /// What has been computed for a slot so far.
+    /// The expression last computed for a slot.
     current: FxHashMap<ValueSlot, ExprId>,
 }
 
 impl StraightLineCode {
-    /// Whether a definition of these slots fits in.
+    /// Whether a definition of these slots fits in: there is room, and none of the slots is defined here already.
     fn takes(&self, targets: &[ValueSlot], size: usize) -> bool {
         self.pool.len() < size && !targets.iter().any(|target| self.current.contains_key(target))
     }
 
+    /// Copies a kernel into the piece, with its inputs replaced by slots or by expressions computed before.
     fn add(&mut self, kernels: &KernelTable, kernel: KernelId, inputs: &[ValueSlot], targets: &[ValueSlot]) {
         let shape = kernels.get(kernel);
         let mut copies: FxHashMap<ExprId, ExprId> = FxHashMap::default();
@@ -581,6 +640,7 @@ impl StraightLineCode {
         }
     }
 
+    /// The expression of a slot: what the piece has computed for it, else a leaf that reads the slot.
     fn leaf(&mut self, slot: ValueSlot) -> ExprId {
         match self.current.get(&slot) {
             Some(&known) => known,

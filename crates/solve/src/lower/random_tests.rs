@@ -201,8 +201,8 @@ proptest! {
         for block in &system.dae.continuous {
             let BltBlock::Assign(assign) = block else { panic!("only assignments") };
             let (got, expected) = (values[system.layout.unknown(assign.unknown)], system.eval(assign.value, &values));
-            // Simplification takes `0*x` for 0 and `x >= x` for true whatever `x` is, and does not keep the sign of a zero that
-            // something is divided by, so values that come from such as are not finite may differ.
+            // Simplification takes `0*x` for 0 and `x >= x` for true whatever `x` is, and does not keep the sign of a
+            // zero that something is divided by, so values that come from such as are not finite may differ.
             if is_of_numbers(&system, assign.value, &values) {
                 prop_assert!(relative_eq!(got, expected, max_relative = 1e-12), "{got} {expected}");
             }

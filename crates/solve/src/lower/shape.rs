@@ -1,8 +1,9 @@
-//! Shapes: expressions that differ only in the slots of their leaves become one kernel.
+//! Kernels from expressions: expressions that differ only in the slots of their leaves share one kernel.
 //!
-//! A definition is copied into the kernels' own pool with its leaves numbered in the order in which they are met. The
-//! pool shares equal nodes, so two definitions have the same shape exactly when they end up as the same node. Parts
-//! that depend on parameters alone become leaves too: their values are computed once per set of parameters.
+//! An expression is copied into the pool of the [`KernelTable`], with its leaves numbered in the order in which they
+//! are met. The pool shares equal nodes, so two expressions have the same kernel exactly when their copies are the same
+//! node. Subexpressions that depend on parameters alone become leaves too (they are hoisted): their values are computed
+//! once per set of parameters.
 
 use super::layout::{ValueLayout, ValueSlot, slot};
 use super::program::KernelDefinitions;
@@ -11,25 +12,28 @@ use bramah_model::flat::Variability;
 use bramah_model::structure::Dae;
 use rustc_hash::FxHashMap;
 
-/// Index of a [`Kernel`].
+/// Index of a [`Kernel`] in the table.
 pub type KernelId = u32;
 
-/// Expressions over numbered inputs, computed together.
+/// Expressions over numbered inputs that are computed together.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Kernel {
-    /// Number of inputs; input `i` is `Node::Var(VarId(i))` in the kernels' pool.
+    /// Number of inputs. Input `i` is `ExprNode::Var(VarId(i))` in the pool.
     pub inputs: u32,
-    /// What is computed.
+    /// The expressions of the outputs.
     pub outputs: Vec<ExprId>,
 }
 
 /// All kernels of a model.
 #[derive(Clone, Debug, Default)]
 pub struct KernelTable {
-    /// Holds their expressions; its functions are the model's and their derivatives.
+    /// The expressions of all kernels. Its functions are those of the model and their derivatives.
     pub pool: Exprs,
+    /// The kernels by index.
     list: Vec<Kernel>,
+    /// The index of each kernel.
     index: FxHashMap<Kernel, KernelId>,
+    /// Derivatives computed so far, by expression and input.
     partials: FxHashMap<(ExprId, u32), ExprId>,
 }
 
@@ -39,12 +43,12 @@ impl KernelTable {
         &self.list[kernel as usize]
     }
 
-    /// All numbers that occur in them.
+    /// All numbers that occur in the kernels.
     pub fn numbers(&self) -> impl Iterator<Item = f64> {
         (0..self.pool.len()).filter_map(|id| self.pool.as_num(ExprId(slot(id))))
     }
 
-    /// The kernel that computes these outputs.
+    /// The index of a kernel; adds it where it is new.
     pub fn intern(&mut self, kernel: Kernel) -> KernelId {
         if let Some(&known) = self.index.get(&kernel) {
             return known;
@@ -55,7 +59,7 @@ impl KernelTable {
         fresh
     }
 
-    /// The derivative of a kernel's expression by one of its inputs.
+    /// The symbolic derivative of an expression with respect to one of its inputs.
     pub fn partial(&mut self, e: ExprId, input: u32) -> ExprId {
         if let Some(&known) = self.partials.get(&(e, input)) {
             return known;
@@ -67,64 +71,73 @@ impl KernelTable {
     }
 }
 
-/// An expression as a kernel's expression and the slots of its inputs.
+/// An expression as a node of the kernel pool and the slots of its inputs.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct KernelExpression {
-    /// In the kernels' pool.
+    /// The node in the kernel pool.
     pub expr: ExprId,
     /// The slot of each input.
     pub inputs: Vec<ValueSlot>,
 }
 
-/// How leaves and phases are treated while shapes are made.
+/// How leaves and phases are treated while expressions are copied.
 #[derive(Clone, Copy, Debug)]
 pub struct ShapingRules<'a> {
-    /// The initial system: `homotopy` depends on its parameter. Else it is its first argument.
+    /// Whether this is the initial system, where `homotopy` depends on its parameter. Elsewhere it is its first
+    /// argument.
     pub initial: bool,
-    /// Explicit variables whose definition takes their place, by slot.
+    /// Explicit variables that are replaced by their definitions, by slot.
     pub inline: &'a FxHashMap<ValueSlot, ExprId>,
-    /// Parts that depend on parameters alone become leaves.
+    /// Whether subexpressions that depend on parameters alone become leaves.
     pub hoist: bool,
 }
 
-/// What a node of the model turns into.
+/// What a node of the model becomes in a kernel.
 enum ShapeNode {
-    /// A leaf with this slot.
+    /// An input that reads this slot.
     Leaf(ValueSlot),
-    /// Another node of the model.
+    /// The copy of another node of the model.
     Other(ExprId),
     /// A number.
     Number(f64),
-    /// `homotopy` in the initial system.
+    /// `homotopy(actual, simplified)` in the initial system.
     Homotopy(ExprId, ExprId),
-    /// The same operation.
+    /// The same operation on the copies of its operands.
     Operation,
 }
 
-/// Makes shapes of a model's expressions.
+/// Copies expressions of a model into kernels.
 pub struct KernelShaper<'a> {
+    /// The expressions of the model.
     source: &'a Exprs,
-    /// Slots, to which those of hoisted parts are added.
+    /// The slots of the model, to which those of hoisted parts are added.
     pub layout: ValueLayout,
     /// The kernels made so far.
     pub kernels: KernelTable,
-    /// Per node of the model: depends on parameters alone.
+    /// For each node of the model whether it depends on parameters alone.
     fixed: Vec<bool>,
-    /// Parts that depend on parameters alone, in the order in which they were found, and their slots.
+    /// Hoisted subexpressions in the order in which they were found, with their slots.
     pub hoisted: Vec<(ExprId, ValueSlot)>,
+    /// The slot of each hoisted subexpression.
     hoisted_index: FxHashMap<ExprId, ValueSlot>,
-    /// Shapes made by the rules of events and observers: the expression and where its inputs begin and how many.
+    /// Results for expressions without inlining: node, start and number of its inputs in `shape_inputs`.
     shapes: FxHashMap<(ExprId, bool), (ExprId, u32, u32)>,
+    /// The inputs of all entries of `shapes`.
     shape_inputs: Vec<ValueSlot>,
+    /// Whether the model uses `homotopy`, so that results differ between the initial system and others.
     has_homotopy: bool,
+    /// For each node of the model the stamp of its last copy, and that copy.
     memo: Vec<(u32, ExprId)>,
+    /// For each slot the stamp of its last use, and its input number there.
     numbered: Vec<(u32, u32)>,
+    /// Number of the present call of `shape_all`. Entries with older stamps are invalid.
     stamp: u32,
+    /// Nodes still to be copied.
     stack: Vec<ExprId>,
 }
 
 impl<'a> KernelShaper<'a> {
-    /// A maker of shapes for this model.
+    /// A shaper for the expressions of this model.
     pub fn new(dae: &'a Dae, layout: ValueLayout) -> Self {
         let source = &dae.exprs;
         let mut pool = Exprs::default();
@@ -146,7 +159,7 @@ impl<'a> KernelShaper<'a> {
         }
     }
 
-    /// The shape of an expression of the model.
+    /// The kernel expression of an expression of the model.
     pub fn shape(&mut self, e: ExprId, rules: &ShapingRules) -> KernelExpression {
         let key = (e, rules.initial && self.has_homotopy);
         let plain = rules.hoist && rules.inline.is_empty();
@@ -161,11 +174,12 @@ impl<'a> KernelShaper<'a> {
         KernelExpression { expr: exprs[0], inputs }
     }
 
-    /// The shapes of some expressions over the same inputs.
+    /// The kernel expressions of several expressions over common inputs.
     pub fn shape_all(&mut self, roots: &[ExprId], rules: &ShapingRules) -> (Vec<ExprId>, Vec<ValueSlot>) {
         self.stamp += 1;
         let mut inputs = Vec::new();
         self.stack.extend(roots.iter().rev());
+        // an explicit stack: expressions may be deeper than the call stack allows
         while let Some(&top) = self.stack.last() {
             if self.known(top).is_some() || self.finish(top, rules, &mut inputs) {
                 self.stack.pop();
@@ -175,12 +189,13 @@ impl<'a> KernelShaper<'a> {
         (exprs, inputs)
     }
 
+    /// The copy of a node in the present call; `None` if it is not made yet.
     fn known(&self, e: ExprId) -> Option<ExprId> {
         let (stamp, copy) = self.memo[e.index()];
         (stamp == self.stamp).then_some(copy)
     }
 
-    /// Copies a node whose arguments are copied; else puts those on the stack that are not and says false.
+    /// Copies a node whose operands are copied. Otherwise pushes the missing operands and returns false.
     fn finish(&mut self, e: ExprId, rules: &ShapingRules, inputs: &mut Vec<ValueSlot>) -> bool {
         let copy = match self.turn(e, rules) {
             ShapeNode::Leaf(slot) => Some(self.input(slot, inputs)),
@@ -200,10 +215,12 @@ impl<'a> KernelShaper<'a> {
         copy.is_some()
     }
 
+    /// Decides what a node becomes.
     fn turn(&mut self, e: ExprId, rules: &ShapingRules) -> ShapeNode {
         let node = self.source.node(e);
         match node {
             ExprNode::Num(bits) => ShapeNode::Number(f64::from_bits(bits)),
+            // `sample` is an event of known time: its mode is set by the driver, its expression is never true by itself
             ExprNode::Sample(..) => ShapeNode::Number(0.0),
             ExprNode::Homotopy(actual, simplified) if rules.initial => ShapeNode::Homotopy(actual, simplified),
             ExprNode::Homotopy(actual, _) => ShapeNode::Other(actual),
@@ -215,7 +232,7 @@ impl<'a> KernelShaper<'a> {
         }
     }
 
-    /// The definitions of all parts that depend on parameters alone.
+    /// The definitions of all hoisted subexpressions.
     pub fn hoisted_definitions(&mut self) -> KernelDefinitions {
         let inline = FxHashMap::default();
         let rules = ShapingRules { initial: false, inline: &inline, hoist: false };
@@ -227,7 +244,7 @@ impl<'a> KernelShaper<'a> {
         defs
     }
 
-    /// The slot of a part that depends on parameters alone.
+    /// The slot of a hoisted subexpression, made at its first use.
     fn hoisted_slot(&mut self, e: ExprId) -> ValueSlot {
         if let Some(&known) = self.hoisted_index.get(&e) {
             return known;
@@ -238,7 +255,7 @@ impl<'a> KernelShaper<'a> {
         fresh
     }
 
-    /// Whether all are copied; pushes those that are not, the first on top.
+    /// Whether all operands are copied. Pushes those that are not, the first on top.
     fn wanted(&mut self, operands: &[ExprId]) -> bool {
         let before = self.stack.len();
         for &operand in operands.iter().rev() {
@@ -249,6 +266,7 @@ impl<'a> KernelShaper<'a> {
         self.stack.len() == before
     }
 
+    /// The input node for a slot; the slot becomes a new input at its first use.
     fn input(&mut self, slot: ValueSlot, inputs: &mut Vec<ValueSlot>) -> ExprId {
         if self.numbered.len() <= slot as usize {
             self.numbered.resize(self.layout.len(), (0, 0));
@@ -262,11 +280,12 @@ impl<'a> KernelShaper<'a> {
         self.kernels.pool.var(VarId(*number))
     }
 
-    /// `lambda*actual + (1 - lambda)*simplified`, exactly `actual` at the end.
+    /// `lambda*actual + (1 - lambda)*simplified`, which is exactly `actual` at lambda = 1.
     fn homotopy(&mut self, actual: ExprId, simplified: ExprId, inputs: &mut Vec<ValueSlot>) -> ExprId {
         let lambda = self.input(slot(ValueLayout::LAMBDA), inputs);
         let (a, s) = (self.known(actual).expect("copied"), self.known(simplified).expect("copied"));
         let pool = &mut self.kernels.pool;
+        // without the selection a simplified part that is not finite would spoil the actual system
         let arrived = pool.rel(RelationalOp::Eq, lambda, Exprs::ONE);
         let rest = pool.sub(Exprs::ONE, lambda);
         let (left, right) = (pool.mul(lambda, a), pool.mul(rest, s));
@@ -274,6 +293,7 @@ impl<'a> KernelShaper<'a> {
         pool.if_(arrived, a, mix)
     }
 
+    /// The copy of an operation whose operands are copied.
     fn copy(&mut self, e: ExprId) -> ExprId {
         let (memo, stamp) = (&self.memo, self.stamp);
         copy_node(self.source, e, &mut self.kernels.pool, |operand| {
@@ -283,7 +303,9 @@ impl<'a> KernelShaper<'a> {
     }
 }
 
-/// The node `e` of `from` in the pool `to`, over arguments that are already there.
+/// Makes the node `e` of pool `from` in pool `to`; `of` gives the copies of its operands.
+///
+/// Relations and floors that are events become plain ones.
 pub fn copy_node(from: &Exprs, e: ExprId, to: &mut Exprs, of: impl Fn(ExprId) -> ExprId) -> ExprId {
     match from.node(e) {
         ExprNode::Num(bits) => to.num(f64::from_bits(bits)),
@@ -300,7 +322,7 @@ pub fn copy_node(from: &Exprs, e: ExprId, to: &mut Exprs, of: impl Fn(ExprId) ->
     }
 }
 
-/// Per variable: a parameter or constant whose value is known before the initial system is solved.
+/// For each variable whether it is a parameter or constant whose value is known before the initial system is solved.
 pub fn fixed_parameters(dae: &Dae) -> Vec<bool> {
     let mut fixed: Vec<bool> =
         dae.variables.iter().map(|v| !v.input && v.variability <= Variability::Parameter).collect();
@@ -310,6 +332,7 @@ pub fn fixed_parameters(dae: &Dae) -> Vec<bool> {
     for v in &dae.free_parameters {
         fixed[v.index()] = false;
     }
+    // in the order of their bindings, so a dependent parameter sees the final answer for those it reads
     for &v in &dae.parameters {
         if let Some(binding) = dae.variables[v.index()].binding {
             fixed[v.index()] &= dae.exprs.variables(binding).iter().all(|used| fixed[used.index()]);
@@ -318,7 +341,7 @@ pub fn fixed_parameters(dae: &Dae) -> Vec<bool> {
     fixed
 }
 
-/// Per node: depends on fixed parameters and numbers alone.
+/// For each node whether it depends on fixed parameters and numbers alone.
 fn fixed_nodes(pool: &Exprs, parameters: &[bool]) -> Vec<bool> {
     let mut fixed: Vec<bool> = Vec::with_capacity(pool.len());
     for id in 0..pool.len() {

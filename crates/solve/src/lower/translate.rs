@@ -1,4 +1,7 @@
-//! From the steps of a kernel to Cranelift's instructions.
+//! Translation of kernel code into Cranelift instructions.
+//!
+//! `native` calls it for each function to be compiled. It must compute the same bits as `interpret`: the same
+//! operations in the same order, no fused multiply-add, and the same functions of the C library.
 
 use super::code::{CodeBranch, CodeStep, KernelCode, RegisterOperand};
 use super::layout::ValueSlot;
@@ -16,20 +19,29 @@ use cranelift_jit::JITModule;
 use cranelift_module::{FuncId, Module};
 use rustc_hash::FxHashMap;
 
-/// Turns steps into instructions of one function.
+/// Writes the instructions of one function.
 pub struct NativeTranslator<'a> {
-    /// Holds the function that is being written.
+    /// The function that is being written.
     pub builder: FunctionBuilder<'a>,
+    /// The module that holds it.
     module: &'a mut JITModule,
+    /// Functions outside the machine code, by name.
     imports: &'a FxHashMap<&'static str, FuncId>,
+    /// The user's functions, for the number of their results.
     functions: &'a [Function],
+    /// Imports that this function has declared.
     used: FxHashMap<&'static str, FuncRef>,
+    /// The type of pointers.
     pointer: Type,
+    /// Array of values, table of slots, number of rows, user functions.
     arguments: [Value; 4],
+    /// The value of each register of the kernel code.
     registers: Vec<Value>,
     /// Registers that hold the result of a relation or logical operation, as an integer.
     truths: FxHashMap<u32, Value>,
+    /// Inputs that are loaded already.
     inputs: FxHashMap<u32, Value>,
+    /// Number of branches around the present place.
     depth: u32,
 }
 
@@ -63,9 +75,10 @@ impl<'a> NativeTranslator<'a> {
         }
     }
 
-    /// Code whose inputs are slots and whose outputs go to `targets`.
+    /// Writes code whose inputs are slots and whose outputs go to `targets`.
     pub fn straight(&mut self, code: &KernelCode, targets: &[ValueSlot]) {
         self.body(code);
+        // all outputs are computed before the first one is stored, since a target may be an input too
         let outputs: Vec<Value> = code.outputs.iter().map(|&output| self.value(output)).collect();
         for (&value, &target) in outputs.iter().zip(targets) {
             let offset = slot_offset(target);
@@ -74,9 +87,10 @@ impl<'a> NativeTranslator<'a> {
         self.builder.ins().return_(&[]);
     }
 
-    /// `for row in table { load inputs; compute; store outputs }`
+    /// Writes `for row in table { load inputs; compute; store outputs }`.
     pub fn looped(&mut self, code: &KernelCode, inputs: u32) {
         let [_, table, rows, _] = self.arguments;
+        // bytes of a row: one 32-bit slot per input and output
         let width = 4 * i64::from(inputs) + 4 * i64::try_from(code.outputs.len()).expect("a small number");
         let bytes = self.builder.ins().imul_imm_s(rows, width);
         let end = self.builder.ins().iadd(table, bytes);
@@ -98,6 +112,7 @@ impl<'a> NativeTranslator<'a> {
         self.builder.ins().return_(&[]);
     }
 
+    /// Writes the body of the loop for the row at this address: loads its inputs, computes, and stores its outputs.
     fn row(&mut self, code: &KernelCode, inputs: u32, row: Value) {
         for input in 0..inputs {
             let address = self.address(row, input);
@@ -120,18 +135,21 @@ impl<'a> NativeTranslator<'a> {
         self.builder.ins().iadd(self.arguments[0], bytes)
     }
 
+    /// Writes all steps of the kernel.
     fn body(&mut self, code: &KernelCode) {
         let nothing = Value::from_u32(0);
         self.registers = vec![nothing; code.registers as usize];
         self.steps(&code.steps);
     }
 
+    /// Writes steps in order.
     fn steps(&mut self, steps: &[CodeStep]) {
         for step in steps {
             self.step(step);
         }
     }
 
+    /// Writes one step and assigns its register.
     fn step(&mut self, step: &CodeStep) {
         match step {
             &CodeStep::Unary(op, dst, a) => self.registers[dst as usize] = self.unary(op, dst, a),
@@ -152,6 +170,7 @@ impl<'a> NativeTranslator<'a> {
         }
     }
 
+    /// The value of an operand: a register, a constant, or an input that is loaded at its first use.
     fn value(&mut self, operand: RegisterOperand) -> Value {
         match operand {
             RegisterOperand::Register(r) => self.registers[r as usize],
@@ -163,7 +182,7 @@ impl<'a> NativeTranslator<'a> {
         }
     }
 
-    /// Loads a slot; what is loaded outside all branches is remembered.
+    /// Loads a slot. Only loads outside all branches are remembered, because others may not have been executed.
     fn load(&mut self, input: u32) -> Value {
         let (values, offset) = (self.arguments[0], slot_offset(input));
         let value = self.builder.ins().load(F64, MemFlagsData::trusted(), values, offset);
@@ -173,7 +192,9 @@ impl<'a> NativeTranslator<'a> {
         value
     }
 
-    /// Whether a value is not 0.
+    /// Whether a value is not 0, as an integer.
+    ///
+    /// Results of relations are known as integers already, which saves a comparison.
     fn truth(&mut self, operand: RegisterOperand) -> Value {
         if let RegisterOperand::Register(r) = operand
             && let Some(&known) = self.truths.get(&r)
@@ -184,12 +205,17 @@ impl<'a> NativeTranslator<'a> {
         self.builder.ins().fcmp(FloatCC::NotEqual, value, zero)
     }
 
+    /// 1 or 0 as a floating-point number. The integer is remembered for later conditions.
     fn as_number(&mut self, dst: u32, truth: Value) -> Value {
         self.truths.insert(dst, truth);
         let (one, zero) = (self.builder.ins().f64const(1.0), self.builder.ins().f64const(0.0));
         self.builder.ins().select(truth, one, zero)
     }
 
+    /// Writes a function of one argument.
+    ///
+    /// Negation, absolute value, square root, sign and `not` are instructions. All others call the function of the
+    /// interpreter.
     fn unary(&mut self, op: UnaryFunction, dst: u32, a: RegisterOperand) -> Value {
         let name = match op {
             UnaryFunction::Not => return self.not(dst, a),
@@ -218,6 +244,7 @@ impl<'a> NativeTranslator<'a> {
         }
     }
 
+    /// Logical negation.
     fn not(&mut self, dst: u32, a: RegisterOperand) -> Value {
         let truth = self.truth(a);
         let one = self.builder.ins().iconst(I8, 1);
@@ -225,9 +252,11 @@ impl<'a> NativeTranslator<'a> {
         self.as_number(dst, turned)
     }
 
+    /// The sign of a value: -1, 0 or 1, and NaN for NaN.
     fn sign(&mut self, a: Value) -> Value {
         let (zero, one) = (self.builder.ins().f64const(0.0), self.builder.ins().f64const(1.0));
         let minus = self.builder.ins().f64const(-1.0);
+        // a + 0 is +0 for both zeros and stays NaN for NaN
         let rest = self.builder.ins().fadd(a, zero);
         let negative = self.builder.ins().fcmp(FloatCC::LessThan, a, zero);
         let positive = self.builder.ins().fcmp(FloatCC::GreaterThan, a, zero);
@@ -235,9 +264,11 @@ impl<'a> NativeTranslator<'a> {
         self.builder.ins().select(positive, one, lower)
     }
 
+    /// Writes a function of two arguments. `Pow` and `Atan2` call the function of the interpreter.
     fn binary(&mut self, op: BinaryFunction, dst: u32, a: RegisterOperand, b: RegisterOperand) -> Value {
         if let BinaryFunction::And | BinaryFunction::Or = op {
             let (a, b) = (self.truth(a), self.truth(b));
+            // both sides are computed already: logical operations do not skip the second one
             let both = self.builder.ins();
             let truth = if op == BinaryFunction::And { both.band(a, b) } else { both.bor(a, b) };
             return self.as_number(dst, truth);
@@ -255,7 +286,7 @@ impl<'a> NativeTranslator<'a> {
         }
     }
 
-    /// The first when it compares so with the second or is not a number, else the second.
+    /// `a` when it compares so with `b` or is NaN, else `b`.
     fn first_if(&mut self, condition: FloatCC, a: Value, b: Value) -> Value {
         let compares = self.builder.ins().fcmp(condition, a, b);
         let not_a_number = self.builder.ins().fcmp(FloatCC::Unordered, a, a);
@@ -263,6 +294,9 @@ impl<'a> NativeTranslator<'a> {
         self.builder.ins().select(first, a, b)
     }
 
+    /// Writes an `if` of which only the chosen side is computed.
+    ///
+    /// Both sides jump to a block that receives the value as its parameter.
     fn branch(&mut self, c: RegisterOperand, then: &CodeBranch, otherwise: &CodeBranch) -> Value {
         let c = self.truth(c);
         let [yes, no, merge] = [(); 3].map(|()| self.builder.create_block());
@@ -282,18 +316,22 @@ impl<'a> NativeTranslator<'a> {
         result
     }
 
+    /// The reference to an imported function, declared in this function at its first use.
     fn reference(&mut self, name: &'static str) -> FuncRef {
         let (module, builder, id) = (&mut *self.module, &mut self.builder, self.imports[name]);
         *self.used.entry(name).or_insert_with(|| module.declare_func_in_func(id, builder.func))
     }
 
+    /// Calls an imported function.
     fn import(&mut self, name: &'static str, args: &[Value]) -> Value {
         let function = self.reference(name);
         let call = self.builder.ins().call(function, args);
         self.builder.inst_results(call)[0]
     }
 
-    /// Arguments and results of a user function pass through the stack.
+    /// Calls a user function. Arguments and results pass through the stack.
+    ///
+    /// `outputs` holds for each output that is used its number and register.
     fn call(&mut self, function: u32, args: &[RegisterOperand], outputs: &[(u32, u32)]) {
         let results = self.functions[function as usize].outputs.len();
         let (inputs, out) = (self.stack(args.len()), self.stack(results));
@@ -312,16 +350,19 @@ impl<'a> NativeTranslator<'a> {
         }
     }
 
+    /// A stack slot for this many numbers.
     fn stack(&mut self, numbers: usize) -> StackSlot {
         let bytes = 8 * u32::try_from(numbers.max(1)).expect("a small number");
         self.builder.create_sized_stack_slot(StackSlotData::new(StackSlotKind::ExplicitSlot, bytes, 3))
     }
 }
 
+/// The offset of a slot in bytes.
 fn slot_offset(slot: ValueSlot) -> Offset32 {
     Offset32::new(i32::try_from(8 * i64::from(slot)).expect("layouts are small enough for 32-bit offsets"))
 }
 
+/// The condition code of a relation. All but `<>` are false for NaN.
 fn relation(rel: RelationalOp) -> FloatCC {
     match rel {
         RelationalOp::Lt => FloatCC::LessThan,

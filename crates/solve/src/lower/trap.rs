@@ -1,4 +1,7 @@
-//! Finding the operation that made a value that is not finite.
+//! Search for the operation that made a value that is not finite, for error messages.
+//!
+//! An expression and the array of values enter. The search goes from the result to the first operand that is not
+//! finite, until an operation has only finite operands. It uses the reference interpreter of `bramah_expr`.
 
 use super::ExecutableSystem;
 use bramah_expr::eval::EvaluationCache;
@@ -10,21 +13,22 @@ use rustc_hash::FxHashMap;
 /// The first operation that made a value that is not finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NonFiniteTrap {
-    /// The operation with its numbers, as in `sqrt(-3.2)`.
+    /// The operation with the values of its operands, as in `sqrt(-3.2)`.
     pub operation: String,
-    /// The same operation as the user wrote it, as in `sqrt(valve.dp)`.
+    /// The same operation with the names of the model, as in `sqrt(valve.dp)`.
     pub written: String,
     /// Its value: infinite or NaN.
     pub value: f64,
-    /// What a function carried out in Rust said about it.
+    /// The message of an external function for its failure; `None` where there is none.
     pub trouble: Option<String>,
 }
 
 /// Texts are cut off after about this many bytes.
 const LONGEST: usize = 200;
 
-/// The first operation in `e`, in the order of evaluation, whose arguments are finite and whose value is not; or the
-/// leaf that is not finite itself.
+/// The first operation in `e`, in the order of evaluation, whose operands are finite and whose value is not.
+///
+/// It may also be a leaf that is not finite. `None` when the value of `e` is finite.
 pub fn find(system: &ExecutableSystem, e: ExprId, values: &[f64]) -> Option<NonFiniteTrap> {
     let pool = &system.dae.exprs;
     let mut leaf = |node: ExprNode| system.leaf(node, values);
@@ -34,6 +38,7 @@ pub fn find(system: &ExecutableSystem, e: ExprId, values: &[f64]) -> Option<NonF
     }
     let mut at = e;
     loop {
+        // an operand that does not enter the value, as the other branch of an `if`, is not to blame
         let needed = needed_operands(pool, at, &mut |c| evaluation.value(pool, c, &mut leaf));
         let culprit = needed.into_iter().find(|&operand| !evaluation.value(pool, operand, &mut leaf).is_finite());
         match culprit {
@@ -54,7 +59,7 @@ pub fn find(system: &ExecutableSystem, e: ExprId, values: &[f64]) -> Option<NonF
     Some(NonFiniteTrap { operation, written, value, trouble })
 }
 
-/// The arguments that are evaluated for this value.
+/// The operands that are evaluated for the value of a node.
 fn needed_operands(pool: &Exprs, e: ExprId, value: &mut impl FnMut(ExprId) -> f64) -> Vec<ExprId> {
     match pool.node(e) {
         ExprNode::If(c, a, b) => vec![c, if value(c) == 0.0 { b } else { a }],
@@ -64,12 +69,12 @@ fn needed_operands(pool: &Exprs, e: ExprId, value: &mut impl FnMut(ExprId) -> f6
     }
 }
 
-/// The operation with the values of its arguments in their place.
+/// The operation with the values of its operands in their place; empty for other nodes.
 fn with_numbers(pool: &Exprs, e: ExprId, value: &mut impl FnMut(ExprId) -> f64) -> String {
     let mut small = Exprs::default();
     small.functions.clone_from(&pool.functions);
     let operands = pool.operands(e).as_slice().to_vec();
-    // Names stand for numbers, so that nothing is folded.
+    // operands become variables named by their values: numbers would be folded away
     let numbers: Vec<f64> = operands.iter().map(|&operand| value(operand)).collect();
     let places: FxHashMap<ExprId, ExprId> =
         operands.iter().zip(0..).map(|(&operand, i)| (operand, small.var(VarId(i)))).collect();

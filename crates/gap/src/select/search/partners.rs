@@ -1,5 +1,8 @@
-//! Once a second effect is taken: does what could not be told from the first one explain as much alone, or more with a partner
-//! of its own? The first effect was chosen among equals, and a second beside a wrong one makes up for it.
+//! Reconsideration of the first effect once a second one is accepted.
+//!
+//! The first effect was chosen among several that the data could not distinguish. If that choice was wrong, the second
+//! effect may only make up for it. So each of the others is fitted alone and with the best partner of its own, and the
+//! explanations are compared (`docs/gap_method.md`, "Which of several is taken").
 
 use super::super::super::policy::{ALPHA, FRONT};
 use super::super::super::problem::HypothesisValues;
@@ -9,33 +12,40 @@ use super::super::models;
 use super::super::weighed::{CrossValidatedFit, settled};
 use super::EffectSearch;
 
-/// A model with the effects that it takes.
+/// An explanation of the gap: a model with its accepted effects.
 #[derive(Clone)]
 pub(super) struct EffectExplanation {
+    /// The fitted model.
     pub model: CrossValidatedFit,
+    /// Its effects, in the order of the model's causes.
     pub taken: Vec<AcceptedEffect>,
 }
 
 impl EffectExplanation {
+    /// Number of effects.
     fn effects(&self) -> usize {
         self.taken.len()
     }
 
-    /// Its first effect, with fitted values.
+    /// The first effect with its fitted values; `None` for a model without effects.
     fn first(&self) -> Option<HypothesisValues> {
         self.model.fit.causes().into_iter().next()
     }
 }
 
 impl EffectSearch<'_> {
-    /// What stands of an explanation with two effects and of those that begin with what cannot be told from its first effect:
-    /// of all that are not surely worse than the best, that with the fewest effects, found first. Its set has the others that
-    /// stand with as many, and those for which there was no time.
+    /// The best explanation among `found` (two effects) and those that begin with an effect indistinguishable from its
+    /// first.
+    ///
+    /// Explanations that are surely worse than the best are dropped. Of the rest the one with the fewest effects
+    /// stands, and of several the one that was found first. The `set` of its first effect lists the others with as many
+    /// effects, and those that were not tried for lack of time. At most [`FRONT`] alternatives are tried.
     pub(super) fn reconsidered(&mut self, base: &CrossValidatedFit, found: EffectExplanation) -> EffectExplanation {
         let set = found.taken.first().map(|t| t.set.clone()).unwrap_or_default();
         let before = found.taken.clone();
         let mut all = vec![found];
         let mut asked = 0;
+        // each alternative costs a fit and a complete step of the search
         while asked < set.len().min(FRONT) && !self.ends.is_over() {
             let alone = self.alone(base, &set[asked].0);
             let pair = alone.as_ref().and_then(|a| self.with_partner(a));
@@ -50,17 +60,19 @@ impl EffectSearch<'_> {
         chosen
     }
 
-    /// Of what is not surely worse than the best that with the fewest effects, found first; its set has the others that stand
-    /// with as many.
+    /// The explanation that stands among `all`, with the set of alternatives that have as many effects.
+    /// The first entry of `all` is the one found by the search.
     fn standing(&self, all: &[EffectExplanation]) -> EffectExplanation {
         let criteria = &self.chooser.criteria;
         let gap = |e: &EffectExplanation| e.model.gap(&criteria.sensors);
         let best = all[1..].iter().fold(&all[0], |best, e| if gap(e) < gap(best) { e } else { best });
+        // the best has the least gap; another one stands unless it is surely worse
         let stands = |e: &&EffectExplanation| gap(e) <= gap(best) || criteria.worse(&best.model, &e.model).is_none();
         let standing: Vec<&EffectExplanation> = all.iter().filter(stands).collect();
         let fewest = standing.iter().map(|e| e.effects()).min().unwrap_or(best.effects());
         let chosen = standing.iter().copied().find(|e| e.effects() == fewest).unwrap_or(best);
         let nats = |e: &&EffectExplanation| Some((e.first()?, criteria.behind(&chosen.model, &e.model)));
+        // a ratio of 1/ALPHA between two models: below it they count as indistinguishable
         let once = (1.0 / ALPHA).ln();
         let as_many = standing
             .iter()
@@ -74,12 +86,14 @@ impl EffectSearch<'_> {
         chosen
     }
 
-    /// One hypothesis of the first step beside the model within its tolerances.
+    /// One hypothesis fitted beside the model within its tolerances.
+    /// `None` if it cannot be simulated, or if the first step did not judge it.
     fn alone(&self, base: &CrossValidatedFit, chosen: &HypothesisValues) -> Option<EffectExplanation> {
         let causes = [chosen.clone()];
         let fitted = self.weighed(models::candidate(self.problem, &causes, Some(&base.fit.tolerances()), 1)?)?;
         let sensors = &self.chooser.criteria.sensors;
         let model = settled(self.problem, sensors, fitted, self.ends);
+        // evidence and t are those of the first step, where all hypotheses were compared with the same model
         let judged = self.trials.iter().find(|t| t.step == 1 && t.chosen.hypothesis == chosen.hypothesis)?.found?;
         let closes = 1.0 - model.gap(sensors) / base.gap(sensors).max(f64::MIN_POSITIVE);
         let (evidence, t) = (judged.evidence, judged.t);
@@ -87,8 +101,9 @@ impl EffectSearch<'_> {
         Some(EffectExplanation { model, taken: vec![taken] })
     }
 
-    /// The same with the best second effect beside it; `None` where no hypothesis is sure.
+    /// The explanation with its best second effect; `None` if no hypothesis is accepted beside it.
     fn with_partner(&mut self, alone: &EffectExplanation) -> Option<EffectExplanation> {
+        // the fits for this explanation must not change the list of the step that the search is in
         let passed = std::mem::take(&mut self.passed);
         let open = self.open(&alone.model.fit);
         let rivals = self.rivals(2, &alone.model, &open, None);
@@ -99,7 +114,8 @@ impl EffectSearch<'_> {
         Some(EffectExplanation { model, taken })
     }
 
-    /// Says of what was taken first and is not named why, and names what is.
+    /// Corrects the reasons in the trials: effects that were accepted and do not stand any more get
+    /// [`RejectionReason::Reconsidered`], those of the new explanation get none.
     fn rewrite(&mut self, before: &[AcceptedEffect], chosen: &EffectExplanation) {
         let named = |step: usize, hypothesis: usize| {
             chosen.taken.get(step - 1).is_some_and(|t: &AcceptedEffect| t.hypothesis == hypothesis)

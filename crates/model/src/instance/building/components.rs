@@ -17,7 +17,7 @@ use bramah_expr::{Exprs, VarId};
 use bramah_syntax::ast::{self, ClassKind, Expr, ExprKind, Subscript};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
 /// The most scalar variables a model may have; beyond, a size is probably mistaken.
@@ -46,38 +46,16 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
         order: Vec::new(),
         exprs: Exprs::default(),
         enumerations: predefined_enumerations(),
-        enumeration_index: FxHashMap::default(),
         root: ScopeId(1),
         diagnostics: Vec::new(),
-        templates: FxHashMap::default(),
-        packages: FxHashMap::default(),
-        bare: FxHashMap::default(),
-        gathering: Vec::new(),
-        constrained: Vec::new(),
-        gathered: 0,
-        tangled: false,
-        dynamic_packages: Vec::new(),
-        array_values: FxHashMap::default(),
-        inner_declared: FxHashMap::default(),
-        functions_checked: FxHashSet::default(),
-        classes_checked: FxHashSet::default(),
-        at_start: FxHashMap::default(),
-        procedures: FxHashMap::default(),
-        externals: FxHashMap::default(),
-        #[cfg(feature = "fmi")]
-        compiled_c: FxHashMap::default(),
-        outer_checked: FxHashMap::default(),
         varied: false,
         streams: crate::instance::StreamConnections::default(),
         connected: FxHashMap::default(),
         overconstrained: crate::instance::overconstrained::OverconstrainedComponents::default(),
-        variabilities: Vec::new(),
-        operator_records: Vec::new(),
-        functions: Vec::new(),
-        tables: FxHashMap::default(),
-        #[cfg(feature = "fmi")]
-        units: FxHashMap::default(),
-        given_elements: Vec::new(),
+        classes: crate::instance::ClassTable::default(),
+        functions: crate::instance::FunctionTable::default(),
+        values: crate::instance::ValueTable::default(),
+        building: crate::instance::BuildingTable::default(),
         eval: state::EvaluationState::default(),
     };
     instance.builder().build_model(request);
@@ -583,7 +561,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         };
         let mut attributes = self.attributes(args.iter().chain(chain), builtin);
         let mut binding = part.binding;
-        if !self.instance.given_elements.is_empty() {
+        if !self.instance.building.given_elements.is_empty() {
             if variability <= Variability::Parameter && !plan.prefix.hidden {
                 let given = self.given_element(name);
                 if given.is_some() && part.final_ {

@@ -64,18 +64,17 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                     });
                 }
                 EquationKind::If { branches, otherwise } => {
-                    let mark = self.instance.diagnostics.len();
                     let mut chosen = Some(otherwise.as_slice());
                     for (condition, body) in branches {
-                        match self.instance.evaluator().constant_boolean(condition, view) {
+                        // what cannot be known before the run has no connections, or its message comes with the network
+                        let (known, _) = self.instance.attempt(|i| i.evaluator().constant_boolean(condition, view));
+                        match known {
                             Some(true) => chosen = Some(body),
                             Some(false) => continue,
                             None => chosen = None,
                         }
                         break;
                     }
-                    // what cannot be told before the run has no connections, or its message comes with the network
-                    self.instance.diagnostics.truncate(mark);
                     if let Some(body) = chosen {
                         self.expand_by(body, view);
                     }

@@ -53,7 +53,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             let name = element_name(&o.name).unwrap_or_default();
             self.instance.eval.texts.insert(name.clone(), o.value.clone());
             let binding = Binding { expr, view, access: none.clone(), final_: false };
-            self.instance.given_elements.push(GivenElement { name, binding, met: false });
+            self.instance.building.given_elements.push(GivenElement { name, binding, met: false });
         }
         let arguments = e.modification.iter().flat_map(|m| &m.arguments);
         arguments.filter_map(|a| Modifier::new(a, view, &none, true)).collect()
@@ -62,7 +62,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// The value given from outside for one element of an array.
     pub(in crate::instance) fn given_element(&mut self, name: &str) -> Option<Binding<'a>> {
         let mut found = None;
-        for given in self.instance.given_elements.iter_mut().filter(|g| g.name == name) {
+        for given in self.instance.building.given_elements.iter_mut().filter(|g| g.name == name) {
             given.met = true;
             found = Some(given.binding.clone());
         }
@@ -72,7 +72,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Every value given for an element must have met one.
     pub(in crate::instance) fn elements_not_met(&mut self) {
         let open: Vec<String> =
-            self.instance.given_elements.iter().filter(|g| !g.met).map(|g| g.name.clone()).collect();
+            self.instance.building.given_elements.iter().filter(|g| !g.met).map(|g| g.name.clone()).collect();
         if self.instance.diagnostics.iter().any(Diagnostic::is_error) {
             // what was not built could not meet anything
             return;

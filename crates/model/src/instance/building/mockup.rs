@@ -74,7 +74,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// A unit by the name of its file and its kind, read and loaded at its first use.
     pub(in crate::instance) fn opened(&mut self, file: &str, kind: &str, at: Span) -> Option<&FmuClass> {
         let key = (file.to_owned(), kind.to_owned());
-        if !self.instance.units.contains_key(&key) {
+        if !self.instance.functions.units.contains_key(&key) {
             let bytes = match self.instance.library.bytes(file) {
                 Ok(bytes) => bytes,
                 Err(why) => {
@@ -94,9 +94,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 }
             };
             let class = self.instance.library.generated(file, &unit.class())?;
-            self.instance.units.insert(key.clone(), FmuClass { unit, class });
+            self.instance.functions.units.insert(key.clone(), FmuClass { unit, class });
         }
-        self.instance.units.get(&key)
+        self.instance.functions.units.get(&key)
     }
 
     /// The object behind the equations of a component: its unit with the values of its texts.

@@ -66,7 +66,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             depth: 0,
         };
         let node = self.build_shaped(&plan, &found, &[], ElementModifiers::default())?;
-        self.instance.inner_declared.insert((root, name), node);
+        self.instance.building.inner.insert((root, name), node);
         Some(node)
     }
 
@@ -187,7 +187,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             return self.fits_outer_shape(node, declared, view);
         };
         let key = (node, std::ptr::from_ref(declared));
-        if let Some(&known) = self.instance.outer_checked.get(&key) {
+        if let Some(&known) = self.instance.building.outer_fits.get(&key) {
             return known;
         }
         let mut fits = true;
@@ -210,7 +210,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 );
             }
         }
-        self.instance.outer_checked.insert(key, fits);
+        self.instance.building.outer_fits.insert(key, fits);
         fits
     }
 }

@@ -26,7 +26,7 @@ fn breach(what: impl Into<String>, at: Span, label: impl Into<String>, rule: &'s
 impl<'a> ComponentBuilder<'_, 'a, '_> {
     /// Refuses what the kind of a class does not allow in it.
     pub(in crate::instance) fn check_class(&mut self, class: ClassId) {
-        if !self.instance.classes_checked.insert(class) {
+        if !self.instance.classes.checked_classes.insert(class) {
             return;
         }
         let ast = self.instance.library.class(class);

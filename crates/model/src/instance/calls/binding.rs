@@ -214,11 +214,9 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         let name = self.instance.library.full_name(class.class);
         let callee = Callee { scope, template, name };
         let span = self.instance.library.class(class.class).name.span;
-        let mark = self.instance.diagnostics.len();
-        let value = self.construct(&callee, Vec::new(), Vec::new(), span);
-        if value.is_none() {
-            self.instance.diagnostics.truncate(mark);
-        }
+        let (value, messages) = self.instance.attempt(|i| i.calls().construct(&callee, Vec::new(), Vec::new(), span));
+        // fields without a default say nothing here: the record may get its value later
+        self.instance.diagnostics.extend(messages.into_iter().filter(|_| value.is_some()));
         Some(value)
     }
 }

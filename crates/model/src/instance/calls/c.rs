@@ -45,7 +45,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         self.prepare_locals(callee)?;
         let signature = self.signature(&call, callee, span)?;
         let wrapper = signature.wrapper();
-        let function = match self.instance.compiled_c.get(&wrapper) {
+        let function = match self.instance.functions.compiled_c.get(&wrapper) {
             Some(known) => known.clone(),
             None => self.compiled(&signature, &wrapper, callee, span)?,
         };
@@ -77,7 +77,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
                 let said = format!("`{}` is C code, which runs unguarded", callee.name);
                 self.instance
                     .report(Diagnostic::new(Code::RunsC, said).at(span, "this call").note(format!("ran: {ran}")));
-                self.instance.compiled_c.insert(wrapper.to_owned(), function.clone());
+                self.instance.functions.compiled_c.insert(wrapper.to_owned(), function.clone());
                 Some(function)
             }
             Err(why) => {

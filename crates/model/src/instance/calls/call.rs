@@ -308,7 +308,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             self.instance.eval.not_inline = true;
             return None;
         }
-        let mark = (self.instance.diagnostics.len(), self.instance.eval.calls.len());
+        let calls = self.instance.eval.calls.len();
         let work = self.instance.eval.work;
         if self.instance.eval.depth == 0 {
             self.instance.eval.work = StatementBudget::allowed([MOST_STEPS, MOST_KNOWN_STEPS]);
@@ -316,7 +316,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         self.instance.eval.work.known = known;
         self.instance.eval.depth += 1;
         let outer = std::mem::replace(&mut self.instance.eval.not_inline, false);
-        let value = self.inline(callee, positional.clone(), named.clone(), span);
+        let (value, messages) =
+            self.instance.attempt(|i| i.calls().inline(callee, positional.clone(), named.clone(), span));
         self.instance.eval.depth -= 1;
         if self.instance.eval.depth == 0 {
             self.instance.eval.work = work;
@@ -324,14 +325,15 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         self.instance.eval.work.known = work.known;
         let refused = std::mem::replace(&mut self.instance.eval.not_inline, outer);
         if value.is_some() || !refused {
+            self.instance.diagnostics.extend(messages);
             return value;
         }
         if known && !std::mem::take(&mut self.instance.eval.may_fail) {
+            self.instance.diagnostics.extend(messages);
             let message = format!("`{}` does not come to an end", callee.name);
             return self.instance.fail(Code::Recursion, &message, span);
         }
-        self.instance.diagnostics.truncate(mark.0);
-        self.instance.eval.calls.truncate(mark.1);
+        self.instance.eval.calls.truncate(calls);
         if gives_nothing(&callee.template) {
             return self.call_for_effect(callee, positional, named, span);
         }
@@ -361,7 +363,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     /// Whether a function keeps to what functions may do (MLS 12.2).
     fn well_formed(&mut self, callee: &Callee<'a>) -> bool {
         let class = callee.template.class;
-        if self.instance.functions_checked.contains(&class) {
+        if self.instance.classes.checked_functions.contains(&class) {
             return true;
         }
         let inputs = self.formals(callee, is_input);
@@ -386,7 +388,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             }
         }
         match wrong {
-            None => self.instance.functions_checked.insert(class),
+            None => self.instance.classes.checked_functions.insert(class),
             Some(d) => {
                 if self.instance.diagnostics.iter().all(|other| other.message != d.message) {
                     self.instance.report(d);

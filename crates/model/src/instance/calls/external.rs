@@ -331,7 +331,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         inputs: usize,
         outputs: usize,
     ) -> bramah_expr::FunctionId {
-        if let Some(&id) = self.instance.externals.get(key) {
+        if let Some(&id) = self.instance.functions.externals.get(key) {
             return id;
         }
         let small = |n: usize| u32::try_from(n).expect("few arguments");
@@ -348,7 +348,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
             outputs: slots.clone(),
             body: slots.iter().enumerate().map(assign).collect(),
         });
-        self.instance.externals.insert(key.to_owned(), id);
+        self.instance.functions.externals.insert(key.to_owned(), id);
         id
     }
 

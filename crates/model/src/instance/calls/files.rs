@@ -150,13 +150,13 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
                 return None;
             }
         };
-        if let Some(matrix) = self.instance.tables.get(&(id, name.to_owned())) {
+        if let Some(matrix) = self.instance.functions.tables.get(&(id, name.to_owned())) {
             return Some(matrix.clone());
         }
         match read_table(&self.instance.library.sources, id, name) {
             Ok(matrix) => {
                 let matrix = Rc::new(matrix);
-                self.instance.tables.insert((id, name.to_owned()), matrix.clone());
+                self.instance.functions.tables.insert((id, name.to_owned()), matrix.clone());
                 Some(matrix)
             }
             Err(d) => {

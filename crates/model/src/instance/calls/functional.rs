@@ -23,9 +23,9 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             (c.class, c.parent) == (class.class, class.parent)
                 && (Rc::ptr_eq(&c.args, &class.args) || c.args.is_empty() && class.args.is_empty())
         };
-        let at = self.instance.functions.iter().position(same).unwrap_or_else(|| {
-            self.instance.functions.push(class.clone());
-            self.instance.functions.len() - 1
+        let at = self.instance.functions.arguments.iter().position(same).unwrap_or_else(|| {
+            self.instance.functions.arguments.push(class.clone());
+            self.instance.functions.arguments.len() - 1
         });
         Some(ModelicaValue::Function(u32::try_from(at).expect("few functions"), Rc::new(bound)))
     }
@@ -63,7 +63,9 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     ) -> Option<(ClassRef<'a>, Rc<Vec<(Ident, ModelicaValue)>>)> {
         let [part] = function.parts.as_slice() else { return None };
         match &self.instance.eval.locals[self.instance.local(part.name.name)?].1 {
-            ModelicaValue::Function(f, bound) => Some((self.instance.functions[*f as usize].clone(), bound.clone())),
+            ModelicaValue::Function(f, bound) => {
+                Some((self.instance.functions.arguments[*f as usize].clone(), bound.clone()))
+            }
             _ => None,
         }
     }

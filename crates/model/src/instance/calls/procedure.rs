@@ -48,7 +48,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
             Some(s.eval.locals[s.eval.frame..].iter().map(|(_, v)| v.clone()).collect::<Vec<ModelicaValue>>())
         })?;
         let key = self.procedure_key(callee, &values);
-        let known = self.instance.procedures.get(&key).cloned();
+        let known = self.instance.functions.procedures.get(&key).cloned();
         let (function, shapes) = match known {
             Some(found) => found,
             None => self.translate(callee, &values, key, span)?,
@@ -144,10 +144,10 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         let blank =
             Function { name: callee.name.clone(), inputs: count, slots: 0, outputs: outputs.clone(), body: Vec::new() };
         let id = self.instance.exprs.add_function(blank);
-        self.instance.procedures.insert(key.clone(), (id, shapes.clone()));
+        self.instance.functions.procedures.insert(key.clone(), (id, shapes.clone()));
         for (section, view) in sections(callee) {
             if self.procedure_statements(section, view).is_none() {
-                self.instance.procedures.remove(&key);
+                self.instance.functions.procedures.remove(&key);
                 return None;
             }
         }

@@ -3,7 +3,7 @@
 use crate::instance::evaluation::state::EvaluationMode;
 use crate::instance::modifiers::{AccessStep, Binding};
 use crate::instance::value::{ModelicaValue, size_text, stack};
-use crate::instance::{Evaluator, LookupContext};
+use crate::instance::{Evaluator, LookupContext, Statements};
 use bramah_expr::types::{ScalarType, Variability};
 use bramah_expr::{ExprId, Exprs};
 use bramah_syntax::ast::{Expr, ExprKind};
@@ -116,11 +116,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
             return self.isolated(b, constant);
         }
         let key = (std::ptr::from_ref(b.expr), b.view, constant);
-        let whole = match self.instance.array_values.get(&key) {
+        let whole = match self.instance.values.arrays.get(&key) {
             Some(v) => v.clone(),
             None => {
                 let v = self.isolated(b, constant)?;
-                self.instance.array_values.insert(key, v.clone());
+                self.instance.values.arrays.insert(key, v.clone());
                 v
             }
         };
@@ -257,21 +257,21 @@ impl<'a> Evaluator<'_, 'a, '_> {
             return if known == 0.0 { self.if_expression(rest, otherwise, view, span) } else { self.eval(value, view) };
         }
         if self.is_evaluated(test) {
-            let mark = self.instance.diagnostics.len();
-            match self.constant_boolean(condition, view) {
-                Some(true) => return self.eval(value, view),
-                Some(false) => return self.if_expression(rest, otherwise, view, span),
-                // in the body of a function that is inlined, arguments are expressions
-                None => self.instance.diagnostics.truncate(mark),
+            let (known, messages) = self.instance.attempt(|i| i.evaluator().constant_boolean(condition, view));
+            if let Some(first) = known {
+                self.instance.diagnostics.extend(messages);
+                return if first { self.eval(value, view) } else { self.if_expression(rest, otherwise, view, span) };
             }
+            // in the body of a function that is inlined, arguments are expressions: both branches are evaluated
         }
-        let mark = (self.instance.diagnostics.len(), self.instance.eval.calls.len());
+        let calls = self.instance.eval.calls.len();
         let not = self.instance.exprs.not(test);
-        let a = self.instance.statements().guarded(test, |s| s.instance.evaluator().eval(value, view));
-        let b = self
-            .instance
-            .statements()
-            .guarded(not, |s| s.instance.evaluator().if_expression(rest, otherwise, view, span));
+        let ((a, b), messages) = self.instance.attempt(|i| {
+            let a = i.statements().guarded(test, |s| s.instance.evaluator().eval(value, view));
+            let rest =
+                |s: &mut Statements<'_, 'a, '_>| s.instance.evaluator().if_expression(rest, otherwise, view, span);
+            (a, i.statements().guarded(not, rest))
+        });
         let by_parameter = self.instance.variability(test) <= Variability::Parameter
             && !self.instance.eval.mode.procedure
             && self.instance.eval.frame == 0;
@@ -281,7 +281,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
             && self.derivatives_differ(a, b)
             && !self.instance.found_at_start(test)
         {
-            self.instance.eval.calls.truncate(mark.1);
+            self.instance.diagnostics.extend(messages);
+            self.instance.eval.calls.truncate(calls);
             return match self.constant_boolean(condition, view)? {
                 true => self.eval(value, view),
                 false => self.if_expression(rest, otherwise, view, span),
@@ -292,17 +293,18 @@ impl<'a> Evaluator<'_, 'a, '_> {
             _ => None,
         };
         if merged.is_some() {
+            self.instance.diagnostics.extend(messages);
             return merged;
         }
         // A branch that has no meaning here (an absent component, another size) is allowed when a parameter decides.
         if by_parameter {
-            self.instance.diagnostics.truncate(mark.0);
-            self.instance.eval.calls.truncate(mark.1);
+            self.instance.eval.calls.truncate(calls);
             return match self.constant_boolean(condition, view)? {
                 true => self.eval(value, view),
                 false => self.if_expression(rest, otherwise, view, span),
             };
         }
+        self.instance.diagnostics.extend(messages);
         let (a, b) = (a?, b?);
         if let (ModelicaValue::Text(_), ModelicaValue::Text(_)) = (&a, &b) {
             return self.instance.fail(Code::NotConstant, "this text must be known before the run", span);

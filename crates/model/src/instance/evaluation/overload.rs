@@ -48,10 +48,10 @@ impl<'a> Operators<'_, 'a, '_> {
         }
         let base = template.bases.last().filter(|b| matches!(b.ast.kind, ClassKind::Record { operator: true }))?;
         let (own, parent) = (base.class, base.parent);
-        let known = self.instance.operator_records.iter().position(|c| c.class == own);
+        let known = self.instance.classes.operator_records.iter().position(|c| c.class == own);
         let at = known.unwrap_or_else(|| {
-            self.instance.operator_records.push(ClassRef { class: own, parent, args: [].into() });
-            self.instance.operator_records.len() - 1
+            self.instance.classes.operator_records.push(ClassRef { class: own, parent, args: [].into() });
+            self.instance.classes.operator_records.len() - 1
         });
         u32::try_from(at).ok()
     }
@@ -214,7 +214,7 @@ impl<'a> Operators<'_, 'a, '_> {
 
     /// The functions behind an operator of a record class: the operator itself, or those it holds.
     fn operators(&mut self, class: u32, name: &str) -> Vec<Callee<'a>> {
-        let record = LookupResult::Class(self.instance.operator_records[class as usize].clone());
+        let record = LookupResult::Class(self.instance.classes.operator_records[class as usize].clone());
         let Some(found @ LookupResult::Class(_)) = self.instance.names().member(&record, Symbol::new(name)) else {
             return Vec::new();
         };

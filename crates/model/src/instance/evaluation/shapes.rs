@@ -76,9 +76,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             }
             ExprKind::If { branches, otherwise } => {
                 for (condition, value) in branches {
-                    let mark = self.instance.diagnostics.len();
-                    let known = self.constant_boolean(condition, view);
-                    self.instance.diagnostics.truncate(mark);
+                    let (known, _) = self.instance.attempt(|i| i.evaluator().constant_boolean(condition, view));
                     if known != Some(false) {
                         return self.shape_inside(value, view);
                     }
@@ -89,9 +87,10 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 match function.parts[0].name.name.as_str() {
                     "fill" => {
                         let inner = self.shape_inside(args.first()?, view)?;
-                        let mark = self.instance.diagnostics.len();
-                        let outer: Option<Vec<usize>> = args[1..].iter().map(|e| self.dimension(e, view)).collect();
-                        self.instance.diagnostics.truncate(mark);
+                        let (outer, _) = self.instance.attempt(|i| {
+                            let sizes = args[1..].iter().map(|e| i.evaluator().dimension(e, view));
+                            sizes.collect::<Option<Vec<usize>>>()
+                        });
                         Some(outer?.into_iter().chain(inner).collect())
                     }
                     "noEvent" | "pre" | "der" | "abs" | "sqrt" | "sin" | "cos" | "exp" => {

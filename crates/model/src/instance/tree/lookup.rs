@@ -239,19 +239,19 @@ impl<'a> NameLookup<'_, 'a, '_> {
             _ => None,
         };
         let class = self.instance.library.enter(declared, Some(textual));
-        if self.instance.constrained.len() >= DEEPEST {
-            self.endless_lookup("constraining", class, &self.instance.constrained.clone());
+        if self.instance.classes.constrained.len() >= DEEPEST {
+            self.endless_lookup("constraining", class, &self.instance.classes.constrained.clone());
             return true;
         }
         // the lookup may meet other redeclared classes, whose constraints are looked up first
-        self.instance.constrained.push(class);
+        self.instance.classes.constrained.push(class);
         let (constraint, place) = match path {
             Some(path) => (self.lookup_path(own, path).ok(), path.span),
             None => {
                 (Some(LookupResult::Class(ClassRef { class, parent: own, args: Rc::from([]) })), declared.name.span)
             }
         };
-        self.instance.constrained.pop();
+        self.instance.classes.constrained.pop();
         constraint
             .is_none_or(|c| self.instance.builder().check_subtype(&c, &LookupResult::Class(found.clone()), at, place))
     }
@@ -265,7 +265,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         part: ast::Ident,
     ) {
         let LookupResult::Class(class) = around else { return };
-        if self.instance.gathering.iter().any(|(c, _)| *c == class.class) {
+        if self.instance.classes.gathering.iter().any(|(c, _)| *c == class.class) {
             return;
         }
         let template = self.template(class.class, class.parent);
@@ -301,7 +301,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
     /// A member of something found: a class in a package, a constant, an inherited class.
     pub fn member(&mut self, found: &LookupResult<'a>, name: Symbol) -> Option<LookupResult<'a>> {
         let LookupResult::Class(class) = found else { return None };
-        let scope = if self.instance.gathering.contains(&(class.class, class.parent)) {
+        let scope = if self.instance.classes.gathering.contains(&(class.class, class.parent)) {
             // `package P extends P.Icons.Package`: what P inherits is not known yet, what is written in it is.
             self.bare_scope(class.class, class.parent)
         } else {
@@ -373,7 +373,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
 
     /// A scope that knows only the classes and imports written in a class itself.
     fn bare_scope(&mut self, class: ClassId, parent: LookupContext) -> ScopeId {
-        if let Some(&scope) = self.instance.bare.get(&(class, parent)) {
+        if let Some(&scope) = self.instance.classes.uninherited.get(&(class, parent)) {
             return scope;
         }
         let ast = self.instance.library.class(class);
@@ -402,7 +402,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let template = Template { bases: vec![base], elements, by_name, ..Template::empty(class, ast.kind) };
         let name = self.instance.library.full_name(class);
         let scope = self.new_scope(Rc::new(template), name, Rc::from([]), None, ast.name.span);
-        self.instance.bare.insert((class, parent), scope);
+        self.instance.classes.uninherited.insert((class, parent), scope);
         scope
     }
 
@@ -434,12 +434,13 @@ impl<'a> NameLookup<'_, 'a, '_> {
     pub fn package(&mut self, class: &ClassRef<'a>) -> ScopeId {
         let key = (class.class, class.parent);
         if class.args.is_empty() {
-            if let Some(&scope) = self.instance.packages.get(&key) {
+            if let Some(&scope) = self.instance.classes.packages.get(&key) {
                 return scope;
             }
         } else if let Some(&(_, scope)) = self
             .instance
-            .dynamic_packages
+            .classes
+            .modified_packages
             .iter()
             .find(|(c, _)| (c.class, c.parent) == key && Rc::ptr_eq(&c.args, &class.args))
         {
@@ -450,16 +451,16 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let span = self.instance.library.class(class.class).name.span;
         let scope = self.new_scope(template, name, class.args.clone(), None, span);
         if class.args.is_empty() {
-            self.instance.packages.insert(key, scope);
+            self.instance.classes.packages.insert(key, scope);
         } else {
-            self.instance.dynamic_packages.push((class.clone(), scope));
+            self.instance.classes.modified_packages.push((class.clone(), scope));
         }
         scope
     }
 
     /// The enumeration type of a class.
     pub(in crate::instance) fn enumeration(&mut self, class: ClassId) -> u32 {
-        if let Some(&i) = self.instance.enumeration_index.get(&class) {
+        if let Some(&i) = self.instance.classes.enumerations.get(&class) {
             return i;
         }
         let literals = match &self.instance.library.class(class).body {
@@ -469,7 +470,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let name = self.instance.library.full_name(class);
         self.instance.enumerations.push(EnumerationDefinition { name, literals });
         let i = u32::try_from(self.instance.enumerations.len() - 1).expect("fewer than 2^32 types");
-        self.instance.enumeration_index.insert(class, i);
+        self.instance.classes.enumerations.insert(class, i);
         i
     }
 
@@ -563,7 +564,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
             }
             at = self.instance.scope(owner).owner;
         }
-        self.instance.inner_declared.get(&(self.instance.root, name)).copied()
+        self.instance.building.inner.get(&(self.instance.root, name)).copied()
     }
 }
 

@@ -165,30 +165,30 @@ const MOST_BASES: usize = 20_000;
 impl<'a> NameLookup<'_, 'a, '_> {
     /// The template of a class at a place.
     pub fn template(&mut self, class: ClassId, parent: LookupContext) -> Rc<Template<'a>> {
-        if let Some(t) = self.instance.templates.get(&(class, parent)) {
+        if let Some(t) = self.instance.classes.templates.get(&(class, parent)) {
             return t.clone();
         }
         let ast = self.instance.library.class(class);
         let mut t = Template::empty(class, ast.kind);
-        if self.instance.gathering.is_empty() {
-            self.instance.gathered = 0;
+        if self.instance.classes.gathering.is_empty() {
+            self.instance.classes.gathered = 0;
         }
-        if self.instance.gathering.len() < DEEPEST {
-            self.instance.gathering.push((class, parent));
+        if self.instance.classes.gathering.len() < DEEPEST {
+            self.instance.classes.gathering.push((class, parent));
             self.gather(&mut t, class, parent, &mut Vec::new());
-            self.instance.gathering.pop();
+            self.instance.classes.gathering.pop();
         } else {
             self.endless_lookup("base", class, &self.gathered_now());
             t.broken = true;
             t.bases.push(BaseClass::of(class, ast, parent));
         }
         let t = Rc::new(t);
-        self.instance.templates.insert((class, parent), t.clone());
+        self.instance.classes.templates.insert((class, parent), t.clone());
         t
     }
 
     fn gathered_now(&self) -> Vec<ClassId> {
-        self.instance.gathering.iter().map(|&(class, _)| class).collect()
+        self.instance.classes.gathering.iter().map(|&(class, _)| class).collect()
     }
 
     /// A class whose own lookup asks for further ones without end: those being looked up, innermost last.
@@ -233,14 +233,14 @@ impl<'a> NameLookup<'_, 'a, '_> {
             return base;
         }
         self.instance.builder().check_class(class);
-        self.instance.gathered += 1;
+        self.instance.classes.gathered += 1;
         // reported once, and then not tried to its end again
-        let most = if self.instance.tangled { DEEPEST } else { MOST_BASES };
-        if self.instance.gathered > most {
-            if !self.instance.tangled {
+        let most = if self.instance.classes.tangled { DEEPEST } else { MOST_BASES };
+        if self.instance.classes.gathered > most {
+            if !self.instance.classes.tangled {
                 self.endless_lookup("base", class, &self.gathered_now());
             }
-            self.instance.tangled = true;
+            self.instance.classes.tangled = true;
             t.broken = true;
             return base;
         }

@@ -1,0 +1,180 @@
+//! The formats of result files, in one table.
+//!
+//! A name's ending enters, a writer or a reader leaves. To add a format, write a module with a [`ResultWriter`] and a
+//! reader, and give it a row of [`FORMATS`]: the command's options, help and messages follow from the table.
+
+use crate::{CsvUnits, CsvWriter, ReadStrictness, Signal, Trajectory, csv_bytes_per_row, mat, read_csv};
+use bramah_syntax::diag::{Code, Diagnostic, Sources, StageResult};
+use std::io::{self, Write};
+
+/// Where a writer puts its bytes.
+pub type ByteSink = Box<dyn Write + Send>;
+
+/// A format of result files.
+pub struct ResultFormat {
+    /// The ending of its files, in lower case without the dot.
+    pub ending: &'static str,
+    /// Its name in help texts.
+    pub name: &'static str,
+    /// Parameters may be written without being asked for: a value that never changes takes no row of its own.
+    pub constants_are_free: bool,
+    /// A run that was killed can go on behind the rows that the file has.
+    pub grows: bool,
+    /// Begins a file.
+    pub create: fn(ByteSink, &[Signal], CsvUnits) -> io::Result<Box<dyn ResultWriter>>,
+    /// Reads a file.
+    pub read: fn(ResultFile<'_>) -> StageResult<Trajectory>,
+    /// About how many bytes a row of these signals takes.
+    pub bytes_per_row: fn(&[Signal]) -> u64,
+}
+
+/// The formats; the first one is that of names without an ending, and of stdout.
+pub static FORMATS: &[ResultFormat] = &[
+    ResultFormat {
+        ending: "csv",
+        name: "CSV",
+        constants_are_free: false,
+        grows: true,
+        create: |out, signals, units| Ok(Box::new(CsvWriter::with_units(out, signals, units)?)),
+        read: |file| {
+            // letters of old encodings in remarks and units do no harm
+            let text =
+                String::from_utf8(file.bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned());
+            let id = file.sources.add(file.name.to_owned(), text);
+            read_csv(file.sources, id, file.time_column, ReadStrictness::Result)
+        },
+        bytes_per_row: csv_bytes_per_row,
+    },
+    ResultFormat {
+        ending: "mat",
+        name: "Modelica .mat",
+        constants_are_free: true,
+        grows: false,
+        create: |out, signals, _| Ok(Box::new(mat::MatWriter::new(out, signals))),
+        read: |file| usable(file.name, mat::read(&file.bytes)),
+        bytes_per_row: binary_bytes_per_row,
+    },
+    #[cfg(feature = "parquet")]
+    ResultFormat {
+        ending: "parquet",
+        name: "Parquet",
+        constants_are_free: false,
+        grows: false,
+        create: |out, signals, _| Ok(Box::new(crate::parquet::ParquetWriter::new(out, signals)?)),
+        read: |file| usable(file.name, crate::parquet::read(bytes::Bytes::from(file.bytes), file.time_column)),
+        bytes_per_row: binary_bytes_per_row,
+    },
+];
+
+/// A result file that was read from the disk.
+pub struct ResultFile<'a> {
+    /// Its name, for messages.
+    pub name: &'a str,
+    /// What it holds.
+    pub bytes: Vec<u8>,
+    /// The column of times, where it is not `time` or the first one.
+    pub time_column: Option<&'a str>,
+    /// Texts that messages point into; a format of text adds its own.
+    pub sources: &'a mut Sources,
+}
+
+/// Takes the rows of a run.
+pub trait ResultWriter: Send {
+    /// Takes rows that stand one after the other: the time in seconds, then one value a signal.
+    ///
+    /// # Errors
+    /// What the sink reports.
+    fn rows(&mut self, rows: &[f64]) -> io::Result<()>;
+
+    /// Hands all rows so far to the system; how many bytes the file has then, for formats that grow.
+    ///
+    /// # Errors
+    /// What the sink reports.
+    fn flush(&mut self) -> io::Result<u64>;
+
+    /// Writes what is left.
+    ///
+    /// # Errors
+    /// What the sink reports, and what the format cannot hold.
+    fn finish(self: Box<Self>) -> io::Result<()>;
+}
+
+/// The format with an ending, in any case of letters.
+pub fn of_ending(ending: &str) -> Option<&'static ResultFormat> {
+    FORMATS.iter().find(|f| f.ending.eq_ignore_ascii_case(ending))
+}
+
+/// The endings of all formats, the usual one first.
+pub fn endings() -> Vec<&'static str> {
+    FORMATS.iter().map(|f| f.ending).collect()
+}
+
+/// The formats as a help text names them: `CSV, Modelica .mat or Parquet`.
+pub fn names() -> String {
+    let all: Vec<&str> = FORMATS.iter().map(|f| f.name).collect();
+    match all.split_last() {
+        Some((last, [])) => (*last).to_owned(),
+        Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// Eight bytes a number, the time included.
+fn binary_bytes_per_row(signals: &[Signal]) -> u64 {
+    8 * (signals.len() as u64 + 1)
+}
+
+fn usable(name: &str, read: Result<Trajectory, String>) -> StageResult<Trajectory> {
+    match read {
+        Ok(trajectory) => StageResult::new(trajectory, Vec::new()),
+        Err(why) => {
+            StageResult::failed(vec![Diagnostic::new(Code::BadData, format!("`{name}` cannot be used: {why}"))])
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::{Arc, Mutex};
+
+    /// Bytes that stay at hand when the writer is gone.
+    #[derive(Clone, Default)]
+    struct SharedBytes(Arc<Mutex<Vec<u8>>>);
+
+    impl Write for SharedBytes {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.lock().unwrap().write(bytes)
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn every_format_reads_what_it_wrote() {
+        let signals = [Signal::new("x").unit("m"), Signal::new("v[1]")];
+        for format in FORMATS {
+            let bytes = SharedBytes::default();
+            let mut writer = (format.create)(Box::new(bytes.clone()), &signals, CsvUnits::Header).unwrap();
+            writer.rows(&[0.0, 1.0, 2.0, 0.5, 1.25, 2.5]).unwrap();
+            writer.rows(&[1.0, -1e-300, 7.0]).unwrap();
+            writer.finish().unwrap();
+            let bytes = bytes.0.lock().unwrap().clone();
+            let mut sources = Sources::default();
+            let file = ResultFile { name: "a", bytes, time_column: None, sources: &mut sources };
+            let found = (format.read)(file).value.unwrap_or_else(|| panic!("{}", format.name));
+            assert_eq!(found.times, [0.0, 0.5, 1.0], "{}", format.name);
+            assert_eq!(found.columns, [vec![1.0, 1.25, -1e-300], vec![2.0, 2.5, 7.0]], "{}", format.name);
+            assert_eq!(found.signals[0].name, "x", "{}", format.name);
+        }
+    }
+
+    #[test]
+    fn a_format_is_found_by_its_ending() {
+        assert_eq!(of_ending("MAT").map(|f| f.name), Some("Modelica .mat"));
+        assert!(of_ending("xlsx").is_none());
+        assert!(names().starts_with("CSV, Modelica .mat"));
+    }
+}
