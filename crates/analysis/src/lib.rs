@@ -1,4 +1,12 @@
-//! What is asked of a model beyond one run: derivatives of its right-hand side, and all that stands on them.
+//! Analyses of a compiled model that need more than one run, or derivatives of its equations.
+//!
+//! A compiled model enters, together with a study file (`study`), an experiment file (`experiment`) or options of the
+//! command line. Linear models, operating points, estimated parameters, sweeps, sensitivities and power balances leave.
+//! The command (`src/cli`), the Rust front `bramah` and the crate `gap` call it.
+//!
+//! Most analyses stand on derivatives. [`lift()`] turns parameters and inputs into constant states, so that one Jacobian
+//! of the system holds all derivatives; [`local`] evaluates this Jacobian at single points; [`tangent`] runs the
+//! lifted model together with its sensitivities.
 
 pub mod estimate;
 pub mod experiment;

@@ -1,5 +1,6 @@
 //! The flat model: scalar variables and equations, each with its origin.
 
+mod algorithm_sections;
 mod balance;
 mod census;
 mod discrete;
@@ -12,6 +13,7 @@ mod ports;
 mod print;
 mod roots;
 mod streams;
+mod when_equations;
 
 pub use explain::explain;
 pub use flatten::flatten;
