@@ -82,8 +82,7 @@
 #![deny(missing_docs)]
 
 #[cfg(feature = "cli")]
-#[doc(hidden)]
-pub mod cli;
+mod cli;
 
 #[doc(inline)]
 pub use bramah_results as results;
@@ -129,8 +128,11 @@ pub mod verdict {
 /// The stages of compiler, solver and diagnosis, in the order in which a circuit passes through them. No promise: they
 /// change without notice.
 pub mod internals {
+    /// The command.
     #[cfg(feature = "cli")]
-    pub use crate::cli;
+    pub mod cli {
+        pub use crate::cli::*;
+    }
     #[cfg(feature = "analysis")]
     pub use bramah_analysis::{self as analysis, experiment, study};
     #[cfg(feature = "lsp")]

@@ -11,7 +11,7 @@ fn main() -> std::process::ExitCode {
     let worker = std::thread::Builder::new()
         .name("bramah".to_owned())
         .stack_size(bramah::internals::compile::STACK)
-        .spawn(bramah::cli::main);
+        .spawn(bramah::internals::cli::main);
     match worker.map(std::thread::JoinHandle::join) {
         Ok(Ok(code)) => code,
         // The panic hook has said what happened.

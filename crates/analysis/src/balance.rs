@@ -167,8 +167,9 @@ pub fn streams(ports: &[PowerPort], powers: &[f64], graph: &ComponentGraph) -> V
     all.map(|((from, to), power)| PowerFlow { from, to, power }).collect()
 }
 
-/// What components that pass power on keep of it: their losses, and what they store, as streams to `name`. Losses have no
-/// port where they are not led away as heat, so no connection shows them. Where power only ends nothing is left over.
+/// What components that pass power on keep of it: their losses, and what they store, as streams to `name`. Losses have
+/// no port where they are not led away as heat, so no connection shows them. Where power only ends nothing is left
+/// over.
 pub fn left(budgets: &[PowerBalance], name: &str) -> Vec<PowerFlow> {
     let passing = budgets.iter().filter(|b| b.net > 0.0 && b.ports.iter().any(|p| p.1 < 0.0));
     passing.map(|b| PowerFlow { from: b.component.clone(), to: name.to_owned(), power: b.net }).collect()

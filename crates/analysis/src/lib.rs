@@ -4,9 +4,9 @@
 //! command line. Linear models, operating points, estimated parameters, sweeps, sensitivities and power balances leave.
 //! The command (`src/cli`), the Rust front `bramah` and the crate `gap` call it.
 //!
-//! Most analyses stand on derivatives. [`lift()`] turns parameters and inputs into constant states, so that one Jacobian
-//! of the system holds all derivatives; [`local`] evaluates this Jacobian at single points; [`tangent`] runs the
-//! lifted model together with its sensitivities.
+//! Most analyses stand on derivatives. [`lift()`] turns parameters and inputs into constant states, so that one
+//! Jacobian of the system holds all derivatives; [`local`] evaluates this Jacobian at single points; [`tangent`] runs
+//! the lifted model together with its sensitivities.
 
 pub mod estimate;
 pub mod experiment;

@@ -98,7 +98,8 @@ impl LocalEvaluator {
         Ok(local)
     }
 
-    /// Whether explicit rows change with the rates put into them; there is no value at the start where this cannot be told.
+    /// Whether explicit rows change with the rates put into them; there is no value at the start where this cannot be
+    /// told.
     fn looks_for_read_rates(&mut self, time: f64) -> bool {
         let LocalEvaluator { plan, point, y, yp, residual, .. } = self;
         let system = &plan.system;

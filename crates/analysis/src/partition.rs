@@ -1,7 +1,8 @@
 //! Zones of the flow over the speed of a pump under a load: dead, load and saturation zone.
 //!
-//! In the load zone the flow is a straight line over the speed. It ends below where the pump just covers its leakage, above
-//! where the flow follows the speed no longer. Source: Zhang et al., Processes 2021, 9, 814, section 2 and Fig. 2.
+//! In the load zone the flow is a straight line over the speed. It ends below where the pump just covers its leakage,
+//! above where the flow follows the speed no longer. Source: Zhang et al., Processes 2021, 9, 814, section 2 and Fig.
+//! 2.
 
 use super::LocalEvaluator;
 use super::linear::LinearizationSetup;
@@ -17,8 +18,8 @@ pub struct OperatingPointFailure {
     pub why: SteadyStateError,
 }
 
-/// Flow, the first output of `local`, over increasing speeds at a load: the operating point is followed from the slowest
-/// speed to either side. The point at the slowest speed comes with it, from which another load is reached.
+/// Flow, the first output of `local`, over increasing speeds at a load: the operating point is followed from the
+/// slowest speed to either side. The point at the slowest speed comes with it, from which another load is reached.
 ///
 /// # Errors
 /// [`OperatingPointFailure`].
@@ -59,13 +60,14 @@ pub struct FlowCharacteristic {
     pub saturation: Option<f64>,
 }
 
-/// Intervals whose slope is above this part of the usual one belong to the load zone: half way between it and the flat zones.
+/// Intervals whose slope is above this part of the usual one belong to the load zone: half way between it and the flat
+/// zones.
 const LOADED: f64 = 0.5;
 /// Points that a line needs beside its ends.
 const LEAST: usize = 3;
 
-/// The zones for positive speeds, and for negative ones with the sign of the curve; `None` where a direction has no load zone
-/// of at least three points.
+/// The zones for positive speeds, and for negative ones with the sign of the curve; `None` where a direction has no
+/// load zone of at least three points.
 ///
 /// `curve` holds speed and flow, the speeds increasing, none twice.
 pub fn zones(curve: &[(f64, f64)]) -> [Option<FlowCharacteristic>; 2] {
@@ -93,8 +95,8 @@ fn one_way(curve: &[(f64, f64)]) -> Option<FlowCharacteristic> {
     Some(FlowCharacteristic { dead: -offset / slope, slope, straight, saturation })
 }
 
-/// The slope up to which half of the whole rise is made: flat zones add little to it however long they are, and a few steep
-/// intervals, where a valve opens, not much.
+/// The slope up to which half of the whole rise is made: flat zones add little to it however long they are, and a few
+/// steep intervals, where a valve opens, not much.
 fn usual_slope(curve: &[(f64, f64)], slopes: &[f64]) -> Option<f64> {
     let rise = |i: usize| curve[i + 1].1 - curve[i].1;
     let mut rising: Vec<usize> = (0..slopes.len()).filter(|&i| slopes[i].is_finite() && rise(i) > 0.0).collect();

@@ -2,7 +2,8 @@
 //!
 //! By the equations' own derivatives, carried along in one run and right across events: this is checked against one
 //! difference in which all parameters move. Else by central differences of tight runs: the run itself finds the moved
-//! event times. Where a jump moves in time, the difference between the two events is the jump over the step, as it must be.
+//! event times. Where a jump moves in time, the difference between the two events is the jump over the step, as it must
+//! be.
 
 use super::TangentModel;
 use super::lift::reading;
@@ -95,8 +96,8 @@ pub fn sensitivity(
     Ok(found)
 }
 
-/// By the equations, all at once where that holds. Where it does not, each half by itself and so on: one parameter that a
-/// run cannot carry along leaves the others exact.
+/// By the equations, all at once where that holds. Where it does not, each half by itself and so on: one parameter that
+/// a run cannot carry along leaves the others exact.
 fn carried(
     model: &CompiledModel,
     settings: &Settings,
@@ -311,8 +312,9 @@ fn run(
 }
 
 impl Sensitivity {
-    /// How much a variable moves with a parameter: the root mean square over the rows, over the variable's range (or its
-    /// size, where it does not vary). A change of the parameter by 1 % moves the variable by this many per cent of it.
+    /// How much a variable moves with a parameter: the root mean square over the rows, over the variable's range (or
+    /// its size, where it does not vary). A change of the parameter by 1 % moves the variable by this many per cent of
+    /// it.
     pub fn weight(&self, parameter: usize, variable: usize) -> f64 {
         let moved = &self.columns[parameter][variable];
         let plain = &self.plain.columns[variable];
@@ -440,7 +442,8 @@ mod tests {
         }
     }
 
-    /// The rate jumps where the state passes a threshold that moves: at an event this is carried, without one it is not.
+    /// The rate jumps where the state passes a threshold that moves: at an event this is carried, without one it is
+    /// not.
     #[test]
     fn jumps_without_events_are_left_to_differences() {
         for (law, why) in [
@@ -457,8 +460,8 @@ mod tests {
         }
     }
 
-    /// A check valve closes while the steps of the pressures are long: by its own derivatives the speed's offset was 8 %
-    /// off behind it, until their errors counted.
+    /// A check valve closes while the steps of the pressures are long: by its own derivatives the speed's offset was 8
+    /// % off behind it, until their errors counted.
     #[test]
     fn derivatives_that_move_within_a_step_of_the_states() {
         let (model, settings, mut moved) = asked("ServoPump.DeadZone", "", &["speed.offset"], "p_A", 100.0);
@@ -483,7 +486,8 @@ mod tests {
         assert_eq!(why, [false, false, true, false], "{:?}", s.differences);
     }
 
-    /// Across events against differences of tight runs: a mass that sticks and slips on a belt, and relief valves that open.
+    /// Across events against differences of tight runs: a mass that sticks and slips on a belt, and relief valves that
+    /// open.
     #[test]
     fn events_of_shipped_models() {
         let belt = ("Belt", &["k", "F_s", "F_c", "v_belt", "m"][..], "x", 4.0);

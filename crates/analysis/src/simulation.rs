@@ -49,8 +49,8 @@ pub trait Analyze {
     /// `E501` where the search comes to no rest.
     fn steady(&self, from: &State) -> Result<State, Error>;
 
-    /// How the trajectories of the continuous variables that the simulation records move with parameters, each by its own
-    /// size.
+    /// How the trajectories of the continuous variables that the simulation records move with parameters, each by its
+    /// own size.
     ///
     /// # Errors
     /// `E023` for a name that is no parameter; what the run said that failed; `E903` where inputs are given, for such

@@ -195,8 +195,8 @@ pub struct OperatingPoint {
 /// A way that is too long at once is halved so often: to a thirty-second of it.
 const HALVINGS: u32 = 5;
 
-/// The steady state with other values of parameters and inputs: reached at once, or over the middle of the way. Outputs of
-/// `local` are then those of this state.
+/// The steady state with other values of parameters and inputs: reached at once, or over the middle of the way. Outputs
+/// of `local` are then those of this state.
 ///
 /// # Errors
 /// [`SteadyStateError`], as it was met first.
@@ -230,8 +230,8 @@ fn go(
     go(chosen, local, &half, target, halvings - 1)
 }
 
-/// The steady state of `local` at a time with its parameters and inputs, reached from `x`. States among `places` may move
-/// on together where nothing depends on this motion.
+/// The steady state of `local` at a time with its parameters and inputs, reached from `x`. States among `places` may
+/// move on together where nothing depends on this motion.
 fn search(
     local: &mut LocalEvaluator,
     (time, theta, u): (f64, &[f64], &[f64]),
@@ -322,8 +322,8 @@ impl ScaledLinearization {
 /// What is left of terms that cancel, as a part of them.
 const CANCEL: f64 = 1e-9;
 
-/// Groups of these states that can move on together with no effect on any rate, as the angles of shafts joined by springs
-/// and gears do: one of each group, and the others with how fast they move for it.
+/// Groups of these states that can move on together with no effect on any rate, as the angles of shafts joined by
+/// springs and gears do: one of each group, and the others with how fast they move for it.
 fn together(a: &DMatrix<f64>, states: &[usize]) -> Vec<(usize, Vec<(usize, f64)>)> {
     let mut m = a.select_columns(states);
     for mut row in m.row_iter_mut() {
@@ -363,8 +363,8 @@ fn together(a: &DMatrix<f64>, states: &[usize]) -> Vec<(usize, Vec<(usize, f64)>
     leaders.iter().filter_map(group).collect()
 }
 
-/// The states that move on where all motion is at constant rates, `Some` of nothing at rest; `None` where a rate changes
-/// with the motion, or moves what others depend on.
+/// The states that move on where all motion is at constant rates, `Some` of nothing at rest; `None` where a rate
+/// changes with the motion, or moves what others depend on.
 pub fn moving(a: &DMatrix<f64>, rates: &[f64], nominals: &[f64]) -> Option<Vec<usize>> {
     let moving: Vec<usize> = (0..rates.len()).filter(|&k| rates[k].abs() > MOVES * nominals[k]).collect();
     let constant = a.row_iter().all(|row| {

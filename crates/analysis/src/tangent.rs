@@ -47,8 +47,8 @@ impl TangentModel {
         Ok(TangentModel { system, sizes: parameters.iter().map(|p| p.1).collect(), raised: lifted.parameters })
     }
 
-    /// What a run with these settings carries along: per parameter the derivatives of its start, which are differences of
-    /// starts. Parameters that the settings give do not follow others.
+    /// What a run with these settings carries along: per parameter the derivatives of its start, which are differences
+    /// of starts. Parameters that the settings give do not follow others.
     ///
     /// # Errors
     /// In words, when there is no start beside the given one.

@@ -8,6 +8,7 @@
 //! - `has_rate`, `has_acceleration`: an effect that needs a derivative adds no state.
 //! - `rigid`, `geared`: nodes at which an effect would explain the same.
 
+use crate::policy;
 use bramah_expr::eval::EvaluationCache;
 use bramah_expr::units::MeasurementUnit;
 use bramah_expr::{ExprId, ExprNode as Term, Exprs, VarId};
@@ -557,15 +558,17 @@ fn multiplies_one(known: &BTreeMap<VarId, f64>, exprs: &mut Exprs, side: ExprId,
     let at = |shift: f64, bumped: Option<VarId>| {
         let mut values = |v: VarId| {
             let place = moving.iter().position(|m| *m == v).map_or(0.0, |i| (i + 1) as f64);
-            shift * (1.0 + 0.37 * place) + if bumped == Some(v) { 1.0 } else { 0.0 }
+            shift * (1.0 + policy::PROBE_SPREAD * place) + if bumped == Some(v) { 1.0 } else { 0.0 }
         };
         value_at(known, exprs, slope, &mut values)
     };
-    let slopes = moving.iter().map(|&v| [0.3, 1.7].map(|x| at(x, Some(v)) - at(x, None)));
+    let slopes = moving.iter().map(|&v| policy::PROBE_POINTS.map(|x| at(x, Some(v)) - at(x, None)));
     let mut count = 0;
     for [a, b] in slopes {
         // slopes must be the same at both points and 0 or 1 in size
-        if (a - b).abs() > 1e-9 || !(a.abs() < 1e-9 || (a.abs() - 1.0).abs() < 1e-9) {
+        if (a - b).abs() > policy::SAME_SLOPE
+            || !(a.abs() < policy::SAME_SLOPE || (a.abs() - 1.0).abs() < policy::SAME_SLOPE)
+        {
             return false;
         }
         count += usize::from(a != 0.0);

@@ -4,7 +4,7 @@
 //! The search turns it into [`Deadline`]s for the complete search and for single steps.
 //! The rules (60 s, or 500 simulations of a slow model) are those of `docs/gap_method.md`, "Order of the hypotheses".
 
-use super::policy::{BUDGET, ROUND, RUNS, SHARE};
+use crate::policy::{BUDGET, ROUND, RUNS, SHARE};
 use rayon::prelude::*;
 use std::fmt;
 use std::time::Duration;

@@ -112,17 +112,53 @@ pub struct ShapeParameter {
     pub occurs: Option<f64>,
     /// It counts in the unit of the signal.
     pub relative: bool,
-    /// It is compared with the potential of the site, or the difference of its two. Values outside of what occurs have
-    /// no effect.
-    pub threshold: bool,
-    /// The same, compared with the first potential alone.
-    pub level: bool,
-    /// It is a size of the signal beyond which the effect acts. Values outside of what occurs have no effect.
-    pub limit: bool,
-    /// It is a frequency, Hz, at which the recordings have a spectral line that the nominal model lacks.
-    pub line: bool,
-    /// It is a number of periods per turn or stroke: the same effect may be accepted again with another one.
-    pub order: bool,
+    /// What its values are compared with; the recordings replace its grid accordingly.
+    pub role: ShapeRole,
+}
+
+/// What the values of a shape are compared with. The annotations of an effect list the parameters of each role.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ShapeRole {
+    /// Nothing that recordings show: its unit says whether it is a time, a speed, a distance or the width of a corner.
+    #[default]
+    Plain,
+    /// `threshold`: the potential of the site, or the difference of its two. Values outside of what occurs have no
+    /// effect.
+    Threshold,
+    /// `level`: the first potential alone, also between two nodes. Values outside of what occurs have no effect.
+    Level,
+    /// `limit`: the size of the signal, beyond which the effect acts. Values outside of what occurs have no effect.
+    Limit,
+    /// `line`: a frequency, Hz, at which the recordings have a spectral line that the nominal model lacks.
+    SpectralLine,
+    /// `order`: a number of periods per turn or stroke. The same effect may be accepted again with another one.
+    Order,
+}
+
+impl ShapeRole {
+    /// The roles by the keys of their annotations.
+    const KEYS: [(&str, ShapeRole); 5] = [
+        ("threshold", ShapeRole::Threshold),
+        ("level", ShapeRole::Level),
+        ("limit", ShapeRole::Limit),
+        ("line", ShapeRole::SpectralLine),
+        ("order", ShapeRole::Order),
+    ];
+
+    /// The role that the annotations give a parameter.
+    ///
+    /// # Errors
+    /// They give it two.
+    fn of(parameter: &str, own: &Modification) -> Result<ShapeRole, String> {
+        let listed = |key: &str| texts(own, key).iter().any(|name| name == parameter);
+        let mut roles = ShapeRole::KEYS.iter().filter(|(key, _)| listed(key));
+        match (roles.next(), roles.next()) {
+            (Some((first, _)), Some((second, _))) => {
+                Err(format!("`{parameter}` is both a `{first}` and a `{second}`; a shape has one role"))
+            }
+            (role, _) => Ok(role.map_or(ShapeRole::Plain, |(_, role)| *role)),
+        }
+    }
 }
 
 /// Two parameters that take the range of a potential, or of what flows through a Series element.
@@ -592,11 +628,11 @@ fn coefficients(
     names.into_iter().map(one).collect()
 }
 
-/// Reads the annotation `shapes = (name = {values}, ...)`. Bounds and unit are those of the parameters; flags such as
-/// `threshold` are lists of names.
+/// Reads the annotation `shapes(name = {values}, ...)`. Bounds and unit are those of the parameters; the keys of
+/// [`ShapeRole`] are lists of names.
 ///
 /// # Errors
-/// A grid is no list of numbers, or a parameter is missing.
+/// A grid is no list of numbers, a parameter is missing, or it has two roles.
 fn shapes(
     own: &Modification,
     read: &EffectAttributes<'_>,
@@ -622,12 +658,10 @@ fn shapes(
         let variable = read.variable(number, &name)?;
         let (min, max) = (read.number(variable.min), read.number(variable.max));
         let unit = variable.unit.clone().unwrap_or_default();
-        let listed = |key: &str| texts(own, key).contains(&name);
-        let (threshold, level, limit) = (listed("threshold"), listed("level"), listed("limit"));
-        let (line, order) = (listed("line"), listed("order"));
+        let role = ShapeRole::of(&name, own)?;
         let relative = relative.contains(&name);
         let unit = unit.to_string();
-        Ok(ShapeParameter { unit, grid, min, max, occurs: None, relative, threshold, level, limit, line, order, name })
+        Ok(ShapeParameter { unit, grid, min, max, occurs: None, relative, role, name })
     };
     list.arguments.iter().map(one).collect()
 }

@@ -8,7 +8,7 @@
 //! class is one more hypothesis, with shared coefficients.
 
 use super::circuit::{CircuitTopology, NamedQuantity, PhysicalPort, same_kind};
-use super::effects::{AttachmentKind, EffectCoefficient, EffectModel, ShapeParameter};
+use super::effects::{AttachmentKind, EffectCoefficient, EffectModel, ShapeParameter, ShapeRole};
 use bramah_analysis::study::EffectChoice;
 use bramah_model::flat::ScalarType;
 use std::collections::{BTreeMap, BTreeSet};
@@ -217,7 +217,7 @@ impl Hypothesis {
     /// Whether it is the same with two lists of values. An effect with an order may be accepted again with another
     /// order.
     pub fn same(&self, values: &[f64], by: &[f64]) -> bool {
-        let order = self.shapes.iter().position(|s| s.order).map(|k| self.coefficients.len() + k);
+        let order = self.shapes.iter().position(|s| s.role == ShapeRole::Order).map(|k| self.coefficients.len() + k);
         order.is_none_or(|k| (values[k] - by[k]).abs() < SAME_ORDER)
     }
 

@@ -93,3 +93,13 @@ pub const SETTLED_SQUARE: f64 = 0.02;
 pub const DOUBLINGS: usize = 4;
 /// Dampings of the step to the parameters without a fold, in parts of the diagonal; tried in this order.
 pub const DAMPINGS: [f64; 4] = [0.0, 0.3, 3.0, 30.0];
+
+// --- Which variables an equation adds up ---
+
+/// Values at which slopes of an equation are compared: a slope that is the same at both is taken for constant. Any two
+/// numbers do that are neither 0 nor 1 and no multiples of each other.
+pub const PROBE_POINTS: [f64; 2] = [0.3, 1.7];
+/// Part by which the value of each further variable is larger, so that a product of two does not look like one of them.
+pub const PROBE_SPREAD: f64 = 0.37;
+/// Difference up to which slopes are the same: rounding of a few operations on numbers of order one.
+pub const SAME_SLOPE: f64 = 1e-9;

@@ -7,7 +7,7 @@
 
 use super::circuit::{CircuitTopology, same_kind};
 use super::data::RecordingData;
-use super::effects::{EffectCoefficient, ShapeParameter};
+use super::effects::{EffectCoefficient, ShapeParameter, ShapeRole};
 use super::hypotheses::{AttachmentSite, EffectAttachment, Hypothesis, SensorSignal};
 use super::lines;
 use super::problem::DiagnosisProblem;
@@ -62,7 +62,7 @@ pub fn fit(problem: &mut DiagnosisProblem<'_>) {
             known
         })
     };
-    let periodic = problem.hypotheses.iter().any(|h| h.shapes.iter().any(|s| s.line));
+    let periodic = problem.hypotheses.iter().any(|h| h.shapes.iter().any(|s| s.role == ShapeRole::SpectralLine));
     // the spectra take a run of the nominal model, so they are only computed for hypotheses that need them
     let lines = if periodic { lines::lines(problem) } else { Vec::new() };
     let mut hypotheses = std::mem::take(&mut problem.hypotheses);
@@ -82,9 +82,10 @@ pub fn fit(problem: &mut DiagnosisProblem<'_>) {
         }
         // the kinds of shapes exclude each other; the first that fits counts
         for shape in &mut h.shapes {
-            if let (true, Some(travel)) = (shape.order, turned(&site, &potentials, &problem.circuit)) {
+            if let (true, Some(travel)) = (shape.role == ShapeRole::Order, turned(&site, &potentials, &problem.circuit))
+            {
                 shape.grid.retain(|n| n * travel >= REPEATS);
-            } else if shape.line {
+            } else if shape.role == ShapeRole::SpectralLine {
                 shape.grid.clone_from(&lines);
             } else if shape.unit == "s" {
                 time(shape, slower, longest);
@@ -108,7 +109,7 @@ pub fn fit(problem: &mut DiagnosisProblem<'_>) {
                 if shape.grid.iter().any(|x| shape.min.is_some_and(|m| *x < m) || shape.max.is_some_and(|m| *x > m)) {
                     shape.grid.clear();
                 }
-            } else if let (true, Some((least, most))) = (shape.limit, size) {
+            } else if let (true, Some((least, most))) = (shape.role == ShapeRole::Limit, size) {
                 shape.grid = PARTS.iter().map(|part| least + part * (most - least)).collect();
             } else if let (true, AttachmentSite::Command(name), Some((_, most))) = (shape.relative, &site, size) {
                 let declared = problem.circuit.inputs.iter().find(|i| i.name == *name).and_then(|i| i.nominal);
@@ -237,8 +238,12 @@ fn acting(site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<Vec
 
 /// Variables of the first place of a hypothesis that its grids need.
 fn compared(h: &Hypothesis) -> impl Iterator<Item = PortVariable> {
-    let measured =
-        |s: &ShapeParameter| s.threshold || s.level || s.order || is_speed(s) || is_corner(s) || is_distance(s);
+    let measured = |s: &ShapeParameter| {
+        matches!(s.role, ShapeRole::Threshold | ShapeRole::Level | ShapeRole::Order)
+            || is_speed(s)
+            || is_corner(s)
+            || is_distance(s)
+    };
     let compared = h.shapes.iter().any(measured) || h.attachments.iter().any(|a| surroundings(a).is_some());
     let site = &h.attachments[0].site;
     let potentials = ports(site).into_iter().map(|p| (p, false));
@@ -334,8 +339,8 @@ fn potentials(problem: &DiagnosisProblem<'_>) -> NominalTrajectories {
 /// A level is compared with the first potential alone, also between two nodes.
 fn values(shape: &ShapeParameter, site: &AttachmentSite, potentials: &NominalTrajectories) -> Option<Vec<f64>> {
     let mut values = match *site {
-        _ if !shape.threshold && !shape.level => return None,
-        AttachmentSite::Across(p, _) if shape.level => acting(&AttachmentSite::Node(p), potentials)?,
+        _ if !matches!(shape.role, ShapeRole::Threshold | ShapeRole::Level) => return None,
+        AttachmentSite::Across(p, _) if shape.role == ShapeRole::Level => acting(&AttachmentSite::Node(p), potentials)?,
         _ => acting(site, potentials)?,
     };
     values.retain(|v| v.is_finite());

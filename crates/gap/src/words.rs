@@ -3,11 +3,11 @@
 //! Enters: a [`Verdict`]. Leaves: text for the command line; `report` uses its parts for the page.
 //! Figures have the unit of the study's column, and errors are given as RMS with their share of the signal's range.
 
-use super::policy::SEEN;
 use super::verdict::{
     EffectFlow, OpenGap, OptionalNumber, ParameterDrift, ParameterEstimate, PlaceEvidence, RecordingError, SignalGap,
     Verdict, VerdictEffect,
 };
+use crate::policy::SEEN;
 use std::fmt::Write;
 
 /// The text: findings, a table of the gap, and what is left.

@@ -34,7 +34,8 @@ mod tests {
 
     #[test]
     fn of_an_autoregression() {
-        // x_k = a x_{k-1} + e_k has rho_k = a^k, so 1 + 2 a/(1 - a) = 19 for a = 0.9; the cut at 0.05 leaves out a tenth
+        // x_k = a x_{k-1} + e_k has rho_k = a^k, so 1 + 2 a/(1 - a) = 19 for a = 0.9; the cut at 0.05 leaves out a
+        // tenth
         let (mut x, mut state) = (0.0, 1_u64);
         let samples: Vec<f64> = (0..200_000)
             .map(|_| {

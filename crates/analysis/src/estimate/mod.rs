@@ -1,6 +1,6 @@
-//! What every estimate from recordings stands on: over how many samples errors resemble each other, and how far an estimate
-//! may be off because of them. [`crate::identify`] and the diagnosis weigh errors and give standard deviations by
-//! these rules alone, so that the same question has the same answer.
+//! What every estimate from recordings stands on: over how many samples errors resemble each other, and how far an
+//! estimate may be off because of them. [`crate::identify`] and the diagnosis weigh errors and give standard deviations
+//! by these rules alone, so that the same question has the same answer.
 
 mod autoregression;
 pub mod correlation;

@@ -2,8 +2,9 @@
 //!
 //! A fit takes from the errors what its parameters can follow, most of it slow, so that the autocorrelation of what is
 //! left over is too small. The models are therefore found by restricted maximum likelihood, which looks only at what no
-//! parameter could have taken. Sources: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545; the order by G. Schwarz,
-//! Annals of Statistics 6 (1978) 461; degrees of freedom by F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
+//! parameter could have taken. Sources: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545; the order by G.
+//! Schwarz, Annals of Statistics 6 (1978) 461; degrees of freedom by F. E. Satterthwaite, Biometrics Bulletin 2 (1946)
+//! 110.
 
 use super::autoregression::{self, longer};
 use super::quasi_newton::{bend, descend, slopes};
@@ -106,8 +107,8 @@ pub fn spread(estimate: LinearizedEstimate<'_>) -> EstimateCovariance<'_> {
     EstimateCovariance { covariance, plain, models: Some(NoiseModels { colour, at, small }) }
 }
 
-/// Variances of the unknowns by how far recordings contradict each other, which no model of the errors within one says: the
-/// spread of their scores (Liang, Zeger, Biometrika 73, 1986). None where there is one recording.
+/// Variances of the unknowns by how far recordings contradict each other, which no model of the errors within one says:
+/// the spread of their scores (Liang, Zeger, Biometrika 73, 1986). None where there is one recording.
 fn between_recordings(estimate: LinearizedEstimate<'_>, plain: &DMatrix<f64>) -> DVector<f64> {
     let mut scores: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
     for s in estimate.series {
@@ -301,8 +302,8 @@ impl LaggedProducts {
     }
 }
 
-/// Partial autocorrelations (as hyperbolic angles) up to the order of least Schwarz criterion, then the logarithm of the
-/// deviation. `None` for errors that are none.
+/// Partial autocorrelations (as hyperbolic angles) up to the order of least Schwarz criterion, then the logarithm of
+/// the deviation. `None` for errors that are none.
 fn chosen(errors: &[&[f64]], most: usize) -> Option<Vec<f64>> {
     let rows: usize = errors.iter().map(|e| e.len()).sum();
     let (power, orders) = autoregression::orders(errors, most, NEARLY_ONE);
@@ -328,7 +329,8 @@ struct WhiteningFilter {
     deviation: f64,
     /// The prediction from 0, 1, 2.. rows before.
     coefficients: Vec<Vec<f64>>,
-    /// By how much the variance of each of the first errors is larger than that of later ones, given those before; 1 last.
+    /// By how much the variance of each of the first errors is larger than that of later ones, given those before; 1
+    /// last.
     excess: Vec<f64>,
 }
 
@@ -368,7 +370,8 @@ impl WhiteningFilter {
         white
     }
 
-    /// The rows whose squares are those of `x` with the errors' covariance between them: the transposed whitening undone.
+    /// The rows whose squares are those of `x` with the errors' covariance between them: the transposed whitening
+    /// undone.
     fn backwards(&self, x: DMatrix<f64>) -> DMatrix<f64> {
         let (rows, columns) = x.shape();
         let last = self.excess.len() - 1;

@@ -1,33 +1,37 @@
 //! Tail probabilities of the normal, the chi-square and Student's distribution.
+//!
+//! Residual tests, confidence intervals and profiles read them. `statrs` supplies the incomplete gamma and beta
+//! functions; where its quantiles are too inaccurate, this file computes them from these functions.
 
 use statrs::function::beta::beta_reg;
 use statrs::function::gamma::checked_gamma_ur;
 
-/// The normal distribution's 97.5 % point.
+/// The 97.5 % quantile of the normal distribution.
 pub const NORMAL: f64 = 1.959_963_984_540_054;
 
-/// Chance that a normal variable lies further than `z` deviations from its mean, on either side.
+/// The probability that a standard normal variable exceeds `z` in absolute value.
 pub fn two_sided(z: f64) -> f64 {
-    // by the square: `erfc` of statrs is good to 1e-10 only
+    // z^2 is chi-square with 1 degree of freedom; `erfc` of statrs is accurate to 1e-10 only.
     beyond(z * z, 1)
 }
 
-/// Chance that a chi-square variable with this many degrees of freedom, at least 1, exceeds `x`; 1 where `x` is not a
-/// number.
+/// The probability that a chi-square variable with `degrees` degrees of freedom (at least 1) exceeds `x`; 1 where `x`
+/// is NaN.
 pub fn beyond(x: f64, degrees: usize) -> f64 {
     checked_gamma_ur(0.5 * degrees as f64, 0.5 * x).unwrap_or(if x > 0.0 { 0.0 } else { 1.0 }).min(1.0)
 }
 
-/// Degrees of freedom from which on Student's distribution is as good as normal.
+/// From this many degrees of freedom on Student's distribution is taken as normal.
 const MANY: f64 = 1e6;
 
-/// The point that a variable of Student's distribution stays below in 97.5 % of all cases; degrees of freedom, at least
-/// 1, need not be whole.
+/// The 97.5 % quantile of Student's distribution. `degrees` is at least 1 and need not be an integer.
 pub fn student(degrees: f64) -> f64 {
     if degrees >= MANY {
         return NORMAL;
     }
-    // statrs' own quantile is off by 1e-5 from 1e5 degrees of freedom on
+    // statrs' own quantile is off by 1e-5 from 1e5 degrees of freedom on. The two-sided tail probability of t is the
+    // incomplete beta function I_x(n/2, 1/2) at x = n/(n + t^2); bisection inverts it. 13 exceeds the quantile of one
+    // degree of freedom, 12.7.
     let outside = |t: f64| beta_reg(0.5 * degrees, 0.5, degrees / (degrees + t * t));
     let (mut low, mut high) = (NORMAL, 13.0);
     for _ in 0..60 {
@@ -37,8 +41,11 @@ pub fn student(degrees: f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// How many deviations the edge of the region reaches in which two normal variables lie together with 95 %, where their
-/// variances have been found with these degrees of freedom: the root of twice Fisher's 95 % point.
+/// The radius, in deviations, of the joint 95 % confidence region of two normal variables whose variances have
+/// `degrees` degrees of freedom.
+///
+/// It is the root of twice the 95 % quantile of Fisher's distribution with 2 and `degrees` degrees of freedom, which
+/// has a closed form.
 pub fn pair_size(degrees: f64) -> f64 {
     let part = if degrees >= MANY { -2.0 * 0.05f64.ln() } else { degrees * (0.05f64.powf(-2.0 / degrees) - 1.0) };
     part.sqrt()

@@ -1,26 +1,30 @@
-//! Doubts that a user should hear first: columns of another sign or unit, signals met worse than by a constant.
+//! Warnings about a study that does not fit its recordings: columns with another sign or unit, and signals that the fit
+//! predicts worse than a constant would.
+//!
+//! Measured and modelled signals enter ([`SignalTrajectory`], [`SignalFit`]); diagnostics leave. `foreign` runs before
+//! the fit, [`doubts`] after it. Both compare a signal with a multiple of the model's, by linear regression.
 
 use super::{IdentificationProblem, IdentifyMethod, ParameterFit, SignalFit, SignalTrajectory};
 use bramah_results::number::rounded;
 use bramah_syntax::diag::{Code, Diagnostic};
 
-/// An error of this part of the signal's own deviation is what a constant leaves; what is measured and what sampling does
-/// to it may add a little.
+/// A relative error of 1 is that of a constant. Noise and sampling may add a little, so warnings begin above it.
 const CONSTANT: f64 = 1.05;
-/// From this part of the measured variation on that a multiple of the model explains, the multiple is reported.
+/// A multiple of the model is reported when it explains at least this share of the measured variance.
 const EXPLAINED: f64 = 0.5;
 
-/// Measured values that are so many times those of the model, or its part, are in another unit.
+/// A factor between measurement and model above this, or below its inverse, points to another unit.
 const FAR: f64 = 300.0;
 
-/// Warnings ([`Code::ForeignColumn`]) about signals that follow the run with the model's own values, but with another
-/// sign or size.
+/// Warnings ([`Code::ForeignColumn`]) about signals that follow the run with the model's own values, but with the
+/// opposite sign or a far larger or smaller size.
 pub(super) fn foreign(problem: &IdentificationProblem<'_>, trajectories: &[SignalTrajectory]) -> Vec<Diagnostic> {
     let strange = |f: &f64| *f < 0.0 || !(1.0 / FAR..FAR).contains(f);
     let found = trajectories.iter().filter_map(|c| Some((c, multiple(c).filter(strange)?)));
     found.map(|(trajectory, factor)| suspicion(problem, trajectory, factor)).collect()
 }
 
+/// The warning about one signal whose measured values are `factor` times those of the model.
 fn suspicion(problem: &IdentificationProblem<'_>, trajectory: &SignalTrajectory, factor: f64) -> Diagnostic {
     let times = rounded(factor, 3);
     let text = format!("`{}` goes {times} times as in a run with the values of the model", trajectory.name);
@@ -37,8 +41,8 @@ fn suspicion(problem: &IdentificationProblem<'_>, trajectory: &SignalTrajectory,
     d.help(format!("likely causes: {cause}; a parameter of the model that is far off"))
 }
 
-/// Warnings ([`Code::WorseThanConstant`]) about signals whose errors are larger than their own deviation, on the train
-/// recordings or on held ones.
+/// Warnings ([`Code::WorseThanConstant`]) about signals whose errors exceed their own standard deviation, on the train
+/// recordings or on the held ones.
 pub fn doubts(problem: &IdentificationProblem<'_>, fit: &ParameterFit, held: &[SignalFit]) -> Vec<Diagnostic> {
     let roles = [("train", fit.train.as_slice()), ("held", held)];
     let found = roles.into_iter().flat_map(|(role, fits)| fits.iter().map(move |f| (role, f)));
@@ -46,6 +50,7 @@ pub fn doubts(problem: &IdentificationProblem<'_>, fit: &ParameterFit, held: &[S
     doubtful.map(|(role, signal)| doubt(problem, fit, role, signal)).collect()
 }
 
+/// The warning about one signal, with likely causes. `role` is `train` or `held`.
 fn doubt(problem: &IdentificationProblem<'_>, fit: &ParameterFit, role: &str, signal: &SignalFit) -> Diagnostic {
     let (name, share) = (&signal.name, rounded(100.0 * signal.relative, 3));
     let text = format!("`{name}` is met worse than by a constant: on {role} recordings the error is {share} %");
@@ -54,6 +59,7 @@ fn doubt(problem: &IdentificationProblem<'_>, fit: &ParameterFit, role: &str, si
     if let Some(span) = span {
         d = d.at(span, "compared here");
     }
+    // The inverse model has no trajectories of signals to compare.
     let trajectory = fit.trajectories.iter().find(|c| c.name == *name && fit.method == IdentifyMethod::Output);
     if let Some(factor) = trajectory.and_then(multiple) {
         d = d.help(advice(factor));
@@ -67,7 +73,9 @@ fn doubt(problem: &IdentificationProblem<'_>, fit: &ParameterFit, role: &str, si
         .help("where the columns are right the search may have ended far off: try `--starts 12`, or `pieces`")
 }
 
-/// By which number the model has to be multiplied to give what was measured, means apart, where that explains it.
+/// The regression coefficient of the measured values on the modelled ones, both without their means.
+///
+/// `None` where the regression explains half of the measured variance or less.
 fn multiple(trajectory: &SignalTrajectory) -> Option<f64> {
     let n = trajectory.measured.len() as f64;
     let modelled: Vec<f64> = trajectory.measured.iter().zip(&trajectory.errors).map(|(m, e)| m + e).collect();
@@ -78,10 +86,12 @@ fn multiple(trajectory: &SignalTrajectory) -> Option<f64> {
     for (m, s) in pairs {
         (own, both, other) = (own + m * m, both + m * s, other + s * s);
     }
+    // The squared correlation coefficient.
     let explained = both * both / (own * other);
     (explained > EXPLAINED).then(|| both / other)
 }
 
+/// The help text for a factor between measurement and model.
 fn advice(factor: f64) -> String {
     let times = rounded(factor, 3);
     if factor < 0.0 {

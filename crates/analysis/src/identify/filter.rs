@@ -1,28 +1,37 @@
-//! Filters without phase shift for recorded signals, and derivatives of them.
+//! Zero-phase low-pass filters for recorded signals, numerical derivatives, and interpolation over gaps.
+//!
+//! The inverse model uses them to get states and their rates from measured signals. All functions take samples at equal
+//! distances and return as many. Coefficients come from the bilinear transform of the Butterworth low-pass with its
+//! corner prewarped (A. V. Oppenheim, R. W. Schafer, Discrete-Time Signal Processing).
 
 use std::f64::consts::PI;
 
-/// One second-order section in the transposed direct form.
+/// A second-order section (biquad) in the transposed direct form II, with a[0] = 1.
 #[derive(Clone, Copy, Debug)]
 struct SecondOrderSection {
+    /// Coefficients of the input: b0, b1, b2.
     b: [f64; 3],
+    /// Coefficients of the output: a1, a2.
     a: [f64; 2],
 }
 
-/// A Butterworth low-pass of fourth order, run forwards and backwards: no phase shift, half the amplitude at the corner.
+/// A fourth-order Butterworth low-pass that runs forwards and backwards: no phase shift, half the amplitude at the
+/// corner.
 #[derive(Clone, Copy, Debug)]
 pub struct LowPass {
+    /// The two pole pairs.
     sections: [SecondOrderSection; 2],
-    /// Samples after which a transient is gone.
+    /// Samples after which a transient has decayed.
     settle: usize,
 }
 
 impl LowPass {
-    /// `corner` is a part of the sampling rate, below one half.
+    /// A filter with a corner as a fraction of the sampling rate, below one half.
     pub fn new(corner: f64) -> LowPass {
         let corner = corner.clamp(1e-6, 0.49);
+        // Prewarping: the bilinear transform maps this analogue frequency to the wanted corner.
         let w = (PI * corner).tan();
-        // damping of the two pole pairs
+        // Pole pairs of a fourth-order Butterworth filter have the damping cos(pi/8) and cos(3 pi/8).
         let section = |angle: f64| {
             let zeta = (angle * PI / 8.0).cos();
             let scale = 1.0 + 2.0 * zeta * w + w * w;
@@ -33,7 +42,9 @@ impl LowPass {
         LowPass { sections: [section(1.0), section(3.0)], settle: (1.5 / corner).ceil() as usize }
     }
 
-    /// The filtered samples. The ends are continued by the samples turned around the end point.
+    /// The filtered samples, as many as `values`.
+    ///
+    /// The ends are continued by the samples rotated about the end point, which keeps value and slope there.
     pub fn apply(&self, values: &[f64]) -> Vec<f64> {
         let n = values.len();
         if n < 2 {
@@ -44,6 +55,7 @@ impl LowPass {
         let mut work: Vec<f64> = (1..=pad).rev().map(|k| 2.0 * first - values[k]).collect();
         work.extend_from_slice(values);
         work.extend((1..=pad).map(|k| 2.0 * last - values[n - 1 - k]));
+        // Each pass filters and reverses; the second one cancels the phase of the first.
         for _ in 0..2 {
             for section in &self.sections {
                 section.run(&mut work);
@@ -55,7 +67,7 @@ impl LowPass {
 }
 
 impl SecondOrderSection {
-    /// Filters in place, from the steady state of the first value on.
+    /// Filters in place. It starts in the steady state for the first value, so that a constant passes unchanged.
     fn run(&self, values: &mut [f64]) {
         let x0 = values[0];
         let mut s2 = (self.b[2] - self.a[1]) * x0;
@@ -70,7 +82,7 @@ impl SecondOrderSection {
     }
 }
 
-/// Central differences; one-sided at the ends.
+/// Central differences of samples `step` seconds apart; one-sided at the ends.
 pub fn derivative(values: &[f64], step: f64) -> Vec<f64> {
     let n = values.len();
     let at = |i: usize| {
@@ -80,7 +92,7 @@ pub fn derivative(values: &[f64], step: f64) -> Vec<f64> {
     (0..n).map(at).collect()
 }
 
-/// Straight lines in the place of NaN; constant at the ends. All zero where there is no number.
+/// Replaces NaN by linear interpolation, at the ends by the nearest value. All zero where no sample is a number.
 pub fn filled(values: &[f64]) -> Vec<f64> {
     let mut out = values.to_vec();
     let known: Vec<usize> = (0..values.len()).filter(|&i| !values[i].is_nan()).collect();

@@ -79,8 +79,8 @@ pub struct SignalTrajectory {
 impl ParameterFit {
     /// The 95 % confidence interval of a parameter, in its unit.
     ///
-    /// It is symmetric in z: on a logarithmic scale it is a factor around the value. Its ends are infinite where the data
-    /// carry no information.
+    /// It is symmetric in z: on a logarithmic scale it is a factor around the value. Its ends are infinite where the
+    /// data carry no information.
     pub fn interval(&self, problem: &IdentificationProblem<'_>, parameter: usize) -> (f64, f64) {
         let (free, z) = (&problem.free[parameter], self.z[parameter]);
         let half = student(self.degrees[parameter]) * self.spread[parameter].sqrt();
@@ -120,7 +120,8 @@ impl Identification<'_> {
 
     /// Estimates the uncertainty at a minimum and puts the result together.
     ///
-    /// Fields that only one method fills (`residuals`, `differences`, `starts`, `joints`) are left empty for the caller.
+    /// Fields that only one method fills (`residuals`, `differences`, `starts`, `joints`) are left empty for the
+    /// caller.
     pub(super) fn estimate(
         &self,
         model: &mut dyn WeightedResiduals,
@@ -133,7 +134,8 @@ impl Identification<'_> {
         // The covariance of all unknowns, corrected for correlated errors of each signal.
         let spread = spread(LinearizedEstimate { jacobian: &minimum.jacobian, residual: &minimum.residual, series });
         let (mut covariance, plain, degrees) = (spread.covariance.clone(), &spread.plain, spread.degrees());
-        // J'J may be singular up to rounding; its inverse would then report a finite deviation for what nobody can know.
+        // J'J may be singular up to rounding; its inverse would then report a finite deviation for what nobody can
+        // know.
         let distinct = separate(&without_rest(&minimum.jacobian.tr_mul(&minimum.jacobian), p));
         let hidden = distinct.blind.iter().filter(|b| b.deviation.is_infinite());
         hidden.flat_map(|b| &b.group).for_each(|&j| covariance[(j, j)] = f64::INFINITY);
@@ -176,7 +178,7 @@ impl Identification<'_> {
     pub(super) fn judge_residuals(&self, fit: &ParameterFit, residual: &[f64]) -> Vec<ResidualTest> {
         let bound = self.problem.bound;
         if self.method() == IdentifyMethod::Inverse {
-            // The residuals of the inverse model are filtered forces themselves; their correlation with the inputs says nothing.
+            // The inputs are the measured forces here, and the residual contains them: a correlation would say nothing.
             let all = bound.inputs.iter().enumerate();
             return all
                 .filter_map(|(k, input)| ResidualTest::new(&input.name, k, &fit.weights, residual, &[]))

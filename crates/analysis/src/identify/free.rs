@@ -1,42 +1,49 @@
-//! The unknowns of an identification: parameters in scales that suit the search.
+//! The unknown parameters of an identification, on the scale z of the search.
+//!
+//! Parameters of the study with their values and bounds in the model enter; [`EstimatedParameter`]s leave. They map z
+//! to values and back. On this scale the start is 0 and a step of 1 is of the order of the parameter's usual value.
 
 use super::IdentificationProblem;
 use crate::study::{BoundParameter, DataSheetTolerance};
 use bramah_expr::VarId;
 
-/// A parameter that is searched for. The search moves z, which is 0 at the start and of the order of 1.
+/// A parameter to estimate, with its scale, prior and bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EstimatedParameter {
-    /// The parameter.
+    /// The model's variable.
     pub variable: VarId,
-    /// Its name.
+    /// Its dotted name.
     pub name: String,
-    /// Its unit.
+    /// The unit of `start`, `min` and `max`.
     pub unit: String,
     /// Its value in the model.
     pub start: f64,
-    /// theta = start exp(size z), else start + size z.
+    /// Whether the scale is logarithmic: value = start exp(size z), else value = start + size z.
     pub logarithmic: bool,
-    /// What one step of z means.
+    /// The change of the value, or of its logarithm, for a step of 1 in z.
     pub size: f64,
-    /// One standard deviation of what is known beforehand, in z; infinite for nothing.
+    /// Standard deviation of the prior about the start, in z; infinite where there is no prior.
     pub prior: f64,
-    /// Bounds in the parameter's unit.
+    /// Lower bound.
     pub min: f64,
-    /// Bounds in the parameter's unit.
+    /// Upper bound.
     pub max: f64,
 }
 
 impl EstimatedParameter {
-    /// A parameter of the study with its value, bounds and nominal value in the model; `None` for exact ones.
+    /// A parameter of the study; `None` for one that the study calls exact.
+    ///
+    /// `min`, `max` and `nominal` are those of the model. Bounds of the study replace those of the model.
     pub fn new(bound: &BoundParameter, start: f64, min: f64, max: f64, nominal: f64) -> Option<EstimatedParameter> {
         let min = bound.min.unwrap_or(min);
         let max = bound.max.unwrap_or(max);
         let usual = if start == 0.0 { nominal } else { start.abs() };
         let (logarithmic, prior) = match bound.knowledge {
             DataSheetTolerance::Exact => return None,
+            // A relative deviation of a positive value is a deviation of its logarithm.
             DataSheetTolerance::Relative(part) => (start > 0.0, part),
             DataSheetTolerance::Absolute(sigma) => (false, sigma / usual),
+            // A parameter that must be positive may be off by a factor, so it gets a logarithmic scale.
             DataSheetTolerance::Free => (min > 0.0 && start > 0.0, f64::INFINITY),
         };
         let size = if logarithmic { 1.0 } else { usual };
@@ -44,12 +51,12 @@ impl EstimatedParameter {
         Some(EstimatedParameter { variable, name, unit, start, logarithmic, size, prior, min, max })
     }
 
-    /// The parameter's value.
+    /// The parameter's value at `z`.
     pub fn value(&self, z: f64) -> f64 {
         if self.logarithmic { self.start * (self.size * z).exp() } else { self.start + self.size * z }
     }
 
-    /// Where a value lies on the scale of the search.
+    /// The inverse of [`EstimatedParameter::value`]; negative infinity for a value without a logarithm.
     pub fn place(&self, value: f64) -> f64 {
         if self.logarithmic {
             if value > 0.0 { (value / self.start).ln() / self.size } else { f64::NEG_INFINITY }
@@ -58,14 +65,14 @@ impl EstimatedParameter {
         }
     }
 
-    /// How much the value moves with z.
+    /// The derivative of the value by z.
     pub fn slope(&self, z: f64) -> f64 {
         if self.logarithmic { self.value(z) * self.size } else { self.size }
     }
 }
 
 impl IdentificationProblem<'_> {
-    /// Parameter values for a run.
+    /// The parameters' values at `z`, as a run takes them.
     pub fn parameters(&self, z: &[f64]) -> Vec<(VarId, f64)> {
         self.free.iter().zip(z).map(|(f, &z)| (f.variable, f.value(z))).collect()
     }

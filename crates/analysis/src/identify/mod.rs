@@ -5,8 +5,8 @@
 //! [`identify`]. The steps are:
 //! 1. [`IdentificationProblem::new`] collects the unknowns, their scales, bounds and priors.
 //! 2. [`Identification::new`] chooses the method and checks which parameters the data can determine (`separate`).
-//! 3. [`Identification::fit`] minimises weighted least squares (`least_squares`) of output errors (`output_error`) or of
-//!    force errors of the inverse model (`inverse`), and estimates the uncertainty (`fit`).
+//! 3. [`Identification::fit`] minimises weighted least squares (`least_squares`) of output errors (`output_error`) or
+//!    of force errors of the inverse model (`inverse`), and estimates the uncertainty (`fit`).
 //! 4. [`Identification::judge_held`] scores the fitted model on recordings that the fit did not use.
 //!
 //! The search works on scaled unknowns z: parameters first, then initial states; z = 0 is the model as it is written.
@@ -99,7 +99,8 @@ trait WeightedResiduals: LeastSquares {
     fn unknowns(&self) -> usize;
     /// Gives the joints between pieces of recordings their smallest weight, before a search begins.
     fn loosen(&mut self) {}
-    /// Gives the joints a larger weight. Returns false when they already have the largest one, or when no recording is cut.
+    /// Gives the joints a larger weight. Returns false when they already have the largest one, or when no recording is
+    /// cut.
     fn tighten(&mut self) -> bool {
         false
     }
@@ -109,8 +110,8 @@ impl<'a> IdentificationProblem<'a> {
     /// Collects the parameters to estimate, with start values, bounds and scales from the model and the study.
     ///
     /// # Errors
-    /// [`Code::BadStudy`] when the study lists no parameter to estimate, when bounds exclude a start value, or when there
-    /// are fewer samples than parameters.
+    /// [`Code::BadStudy`] when the study lists no parameter to estimate, when bounds exclude a start value, or when
+    /// there are fewer samples than parameters.
     pub fn new(
         model: &'a CompiledModel,
         bound: &'a BoundStudy,
@@ -168,7 +169,7 @@ impl<'a> IdentificationProblem<'a> {
     fn bounds(&self, unknowns: usize) -> VariableBounds {
         let mut bounds = VariableBounds { low: vec![f64::NEG_INFINITY; unknowns], high: vec![f64::INFINITY; unknowns] };
         for (j, free) in self.free.iter().enumerate() {
-            // exp(20) is 5e8: beyond such factors a value is physically meaningless and runs overflow.
+            // exp(20) is 5e8: a factor beyond it has no physical meaning.
             let far = if free.logarithmic { 20.0 } else { f64::INFINITY };
             bounds.low[j] = free.place(free.min).max(-far);
             bounds.high[j] = free.place(free.max).min(far);
@@ -223,8 +224,8 @@ pub struct Identification<'a> {
     exact: OnceLock<Result<Arc<ForwardSensitivityModel>, String>>,
     /// Which parameters the data can determine, computed at the start values.
     pub separation: IdentifiabilityAnalysis,
-    /// For each entry of `separation.blind`, up to three variables whose measurement would separate its parameters, best
-    /// first.
+    /// For each entry of `separation.blind`, up to three variables whose measurement would separate its parameters,
+    /// best first.
     pub advice: Vec<Vec<String>>,
     /// Warnings about columns that seem to have another sign or unit than the study states.
     pub suspicions: Vec<Diagnostic>,
@@ -313,8 +314,9 @@ impl<'a> Identification<'a> {
 
     /// Up to three unmeasured variables that would separate the parameters of a blind direction, best first.
     ///
-    /// The model runs along the first recording with its own values, then with the parameters moved along the direction.
-    /// The variables that change most, relative to their ranges, come first. Empty when a run fails or nothing changes.
+    /// The model runs along the first recording with its own values, then with the parameters moved along the
+    /// direction. The variables that change most, relative to their ranges, come first. Empty when a run fails or
+    /// nothing changes.
     fn what_separates(&self, blind: &UnidentifiableDirection) -> Vec<String> {
         let Ok(runs) = OutputError::new(self.problem, &self.train[..1], None) else { return Vec::new() };
         let flat = &self.problem.model.flat;
@@ -329,11 +331,12 @@ impl<'a> Identification<'a> {
         let mut z = vec![0.0; runs.unknowns()];
         // A small step: large enough to stand out of the error of the runs, small enough for parameters of any kind.
         let Ok(base) = runs.simulate(0, &z, &wanted) else { return Vec::new() };
+        // 0.05 in z is about 5 % of a parameter's usual value.
         z.iter_mut().zip(&blind.direction).for_each(|(z, d)| *z = 0.05 * d);
         let Ok(moved) = runs.simulate(0, &z, &wanted) else { return Vec::new() };
         let mut effects: Vec<(f64, &String)> =
             base.iter().zip(&moved).zip(names).map(|((a, b), n)| (effect(a, b), n)).collect();
-        // Changes below 0.2 % of the range are too small for a sensor to show.
+        // Changes below 0.2 % of a variable's range count as none.
         effects.retain(|(e, _)| *e > 2e-3);
         effects.sort_by(|a, b| b.0.total_cmp(&a.0));
         effects.into_iter().take(3).map(|(_, n)| n.clone()).collect()
@@ -350,8 +353,8 @@ impl<'a> Identification<'a> {
     /// Estimates the parameters from `starts` places: the values in the model, and `starts - 1` random places within
     /// bounds and tolerances, at most a factor of e away.
     ///
-    /// The end with the smallest sum of squares counts; [`ParameterFit::starts`] counts the ends of all searches. The same
-    /// `seed` draws the same places.
+    /// The end with the smallest sum of squares counts; [`ParameterFit::starts`] counts the ends of all searches. The
+    /// same `seed` draws the same places.
     ///
     /// # Errors
     /// As [`Identification::new`].
@@ -370,7 +373,8 @@ impl<'a> Identification<'a> {
             }
             None => {
                 let mut model = self.output_error()?;
-                // Standard deviations are not learned below a millionth of the range: a perfect fit would divide by zero.
+                // Standard deviations are not learned below a millionth of the range: a perfect fit would divide by
+                // zero.
                 let floor: Vec<f64> = self.problem.full_scale.iter().map(|f| 1e-6 * f).collect();
                 let found = search_several(self.problem, &mut model, &floor, starts, seed);
                 let (minimum, starts) = found.ok_or_else(|| cannot_follow(model.broken.as_ref()))?;
@@ -389,11 +393,11 @@ impl<'a> Identification<'a> {
         }
     }
 
-    /// Scores the fitted model on recordings that the fit did not use; one entry for each signal (or input, for the inverse
-    /// model).
+    /// Scores the fitted model on recordings that the fit did not use; one entry for each signal (or input, for the
+    /// inverse model).
     ///
-    /// Initial states that no parameter decides are estimated from the first 5 % of each recording, at most 0.2 s. These
-    /// samples are not scored.
+    /// Initial states that no parameter decides are estimated from the first 5 % of each recording, at most 0.2 s.
+    /// These samples are not scored.
     ///
     /// # Errors
     /// When the model cannot follow them, or when one is too short for the inverse model.

@@ -1,7 +1,13 @@
-//! Output error: runs from the inputs alone against what was measured, with the initial states among the unknowns.
+//! Output error: the difference between runs from the inputs alone and the measured signals.
 //!
-//! Runs carry their derivatives along, which is checked once against a difference; where this fails, derivatives are
-//! central differences.
+//! Recordings and a point z enter; the residual and its Jacobian leave, for [`super::minimise`]. The unknowns are the
+//! parameters, then the initial states of each recording, then the states at the joints of its pieces (`pieces`).
+//!
+//! Rows of the residual: for each recording and signal one error per measured sample, over the signal's deviation; then
+//! priors of the parameters; then for each recording its initial states (their prior) and its jumps at joints.
+//!
+//! The Jacobian comes from sensitivities that are integrated with the run (`exact`). They are checked once against a
+//! finite difference along each recording; where they fail, central differences replace them.
 
 use super::exact::ForwardSensitivityModel;
 use super::least_squares::LeastSquares;
@@ -17,47 +23,57 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Residual and derivatives of runs along recordings.
+/// The output-error problem along some recordings.
 pub struct OutputError<'a> {
+    /// The model, its study and the parameters to estimate.
     pub(super) problem: &'a IdentificationProblem<'a>,
-    /// How runs are made.
+    /// Runs the model with a tight tolerance.
     pub(super) runner: ModelRunner<'a>,
+    /// The model's variable of each signal.
     wanted: Vec<VarId>,
+    /// The recordings, each with its unknown states.
     pub(super) cases: Vec<RecordingCase>,
+    /// Deviations of signals and joints, and the rows of each series.
     pub(super) weights: ResidualWeights,
-    /// Parameters in z; 0 where only initial states are searched for.
+    /// How many parameters z holds; 0 where only initial states are estimated.
     pub(super) parameters: usize,
-    /// Parameter values where they are not searched for.
+    /// Parameters in z for runs in which they are not estimated.
     fixed: Vec<f64>,
-    /// What carries derivatives along, where there is anything.
+    /// The model that integrates its own sensitivities; `None` until [`OutputError::differentiate_by`] sets it.
     exact: Option<Arc<ForwardSensitivityModel>>,
-    /// Per recording whether they hold: not known yet, or why they do not.
+    /// For each recording, whether integrated sensitivities are valid there.
     trust: Vec<DerivativeValidity>,
-    /// Why the last run failed.
+    /// The failure of the last run that failed.
     pub broken: Option<RunFailure>,
 }
 
-/// Whether derivatives carried along hold along a recording.
+/// Whether integrated sensitivities are valid along a recording.
 #[derive(Clone, Debug, PartialEq)]
 enum DerivativeValidity {
+    /// Not checked yet.
     Unknown,
+    /// They agreed with a finite difference.
     Holds,
-    /// Why not.
+    /// They did not, or could not be computed, for this reason.
     Fails(String),
 }
 
-/// Step of the differences in z.
+/// Step of central differences, in z.
 const STEP: f64 = 1e-4;
-/// How far derivatives carried along may be from a difference, as a part of its largest value.
+/// Largest difference between a sensitivity and a finite difference, relative to the largest sensitivity of the
+/// recording.
 const AGREE: f64 = 2e-3;
-/// The part of the samples that may lie between the moved times of an event.
+/// Share of samples that may disagree, because they lie between the shifted times of an event.
 const BETWEEN: f64 = 0.02;
-/// Steps of that difference: a long one, so that the error of the runs does not show, and a shorter one where the signals
-/// are strongly curved.
+/// Steps of the checking difference, in z: a long one, which stands out of the integration error, and a shorter one for
+/// signals that are strongly curved in z.
 const CHECKS: [f64; 2] = [1e-3, 1e-4];
 
 impl<'a> OutputError<'a> {
-    /// For recordings: with parameters among the unknowns, or with parameters at `fixed` and initial states alone.
+    /// Sets up the problem for `recordings`.
+    ///
+    /// With `fixed`, parameters stay at these values in z and only initial states are estimated. The starts of pieces
+    /// of a cut recording are placed along the recording (`place_joints`).
     ///
     /// # Errors
     /// When the model cannot start.
@@ -66,6 +82,8 @@ impl<'a> OutputError<'a> {
         recordings: &[Recording],
         fixed: Option<&[f64]>,
     ) -> Result<OutputError<'a>, RunFailure> {
+        // Finite differences divide the integration error by a step of 1e-4, so runs are a hundred times tighter than
+        // usual.
         let tolerance = problem.model.flat.experiment.tolerance.unwrap_or(1e-6).min(1e-6) * 1e-2;
         let runner = ModelRunner { model: problem.model, tolerance };
         let parameters = if fixed.is_some() { 0 } else { problem.free.len() };
@@ -74,9 +92,11 @@ impl<'a> OutputError<'a> {
         let mut next = parameters;
         for recording in recordings {
             let track = RunInputs::new(problem.bound, recording);
+            // Initial states that a parameter decides are not free: the parameter already moves them.
             let states = free_states(problem, &runner, &track, &fixed)?;
             let mut legs = Vec::new();
             for first in pieces::cuts(track.times.len(), recording.pieces) {
+                // At a joint all states are free, whatever the parameters move.
                 let states = if first == 0 { states.clone() } else { inner_states(problem) };
                 let places = next..next + states.len();
                 next = places.end;
@@ -99,13 +119,14 @@ impl<'a> OutputError<'a> {
             trust,
             broken: None,
         };
+        // Placing the joints needs runs, so it comes after the problem is complete.
         for case in (0..all.cases.len()).filter(|&c| recordings[c].pieces > 1) {
             all.place_joints(case, &all.fixed.clone());
         }
         Ok(all)
     }
 
-    /// The same problem for states at the start of one case alone, parameters standing still.
+    /// The problem of one case alone with fixed parameters, in which only states at its start are unknown.
     pub(super) fn single(&self, case: RecordingCase, parameters: &[f64]) -> OutputError<'a> {
         let cases = vec![case];
         OutputError {
@@ -117,12 +138,13 @@ impl<'a> OutputError<'a> {
             parameters: 0,
             fixed: parameters.to_vec(),
             exact: None,
+            // Few unknowns: central differences are cheap enough.
             trust: vec![DerivativeValidity::Fails("it is not asked for".to_owned())],
             broken: None,
         }
     }
 
-    /// Takes derivatives carried along, or differences for the reason given.
+    /// Sets the source of derivatives: integrated sensitivities, or finite differences for the reason given.
     pub fn differentiate_by(&mut self, exact: Result<Arc<ForwardSensitivityModel>, String>) {
         match exact {
             Ok(exact) => self.exact = Some(exact),
@@ -130,12 +152,13 @@ impl<'a> OutputError<'a> {
         }
     }
 
-    /// Why derivatives were differences along some recording.
+    /// Why finite differences were used along some recording; `None` where they were used nowhere.
     pub fn differences(&self) -> Option<&str> {
         self.trust.iter().find_map(|t| if let DerivativeValidity::Fails(why) = t { Some(why.as_str()) } else { None })
     }
 
-    /// The same with only the first seconds of each recording.
+    /// The same problem with only the beginning of each recording. `length` gives its seconds from the times of the
+    /// samples.
     #[must_use]
     pub fn beginning(mut self, length: impl Fn(&[f64]) -> f64) -> OutputError<'a> {
         for case in &mut self.cases {
@@ -147,17 +170,17 @@ impl<'a> OutputError<'a> {
         self
     }
 
-    /// True where initial states are searched for.
+    /// Whether z holds states.
     pub fn frees_states(&self) -> bool {
         self.all_states() > 0
     }
 
-    /// How many states are searched for.
+    /// How many states z holds: initial ones and those at joints.
     pub(super) fn all_states(&self) -> usize {
         self.cases.iter().map(|c| c.places().len()).sum()
     }
 
-    /// Simulated values along one recording, one column a variable.
+    /// Simulated values along one recording at its samples, one column for each of `wanted`.
     ///
     /// # Errors
     /// When the run does not reach the end.
@@ -165,8 +188,10 @@ impl<'a> OutputError<'a> {
         self.trajectory(case, z, wanted).map(|run| run.signals)
     }
 
-    /// One leg from the end of the one before: the values of `wanted` at its samples and at the start of the next leg,
-    /// and the state there.
+    /// Runs one piece (leg) of a recording.
+    ///
+    /// `before` is the state at the end of the piece before; `None` for the first one. Returns the values of `wanted`
+    /// at the samples of the piece and at the first sample of the next one, and the state there.
     pub(super) fn leg(
         &self,
         case: usize,
@@ -180,11 +205,13 @@ impl<'a> OutputError<'a> {
         let of = &self.cases[case];
         let (track, leg) = (of.along(leg), &of.legs[leg]);
         let before = before.or_else(|| of.from.clone());
+        // A run starts at the model's own initial equations where no state is free.
         let start = match before {
             Some(state) => Some(state),
             None if leg.states.is_empty() => None,
             None => Some(self.runner.start(&track, &parameters)?),
         };
+        // Free states replace those of `before`; everything else, as discrete variables, carries over.
         let start = start.map(|mut state| {
             leg.states.iter().zip(&z[leg.places.clone()]).for_each(|(free, &z)| free.put(&mut state, z));
             state
@@ -192,7 +219,7 @@ impl<'a> OutputError<'a> {
         self.runner.run_on(&track, &parameters, start.as_ref(), wanted)
     }
 
-    /// All legs of a recording.
+    /// Runs all pieces of a recording one after the other.
     fn trajectory(&self, case: usize, z: &[f64], wanted: &[VarId]) -> Result<ShootingValues, RunFailure> {
         let of = &self.cases[case];
         let mut all = ShootingValues { signals: vec![Vec::new(); wanted.len()], jumps: Vec::new() };
@@ -206,7 +233,9 @@ impl<'a> OutputError<'a> {
         Ok(all)
     }
 
-    /// One leg: the signals at its own samples, the jumps to the next leg, and its end.
+    /// Runs one piece and returns its signals at its own samples, its jumps to the next piece, and its end state.
+    ///
+    /// A jump is (end of this piece - start of the next) of a state, in units of the state's range.
     fn leg_values(
         &self,
         case: usize,
@@ -216,19 +245,25 @@ impl<'a> OutputError<'a> {
         wanted: &[VarId],
     ) -> Result<(ShootingValues, State), RunFailure> {
         let of = &self.cases[case];
+        // The states at the joint are requested behind the signals and split off after the run.
         let asked = with_handed(wanted, of.handed(leg));
         let (mut columns, end) = self.leg(case, leg, z, before, &asked)?;
         let handed = columns.split_off(wanted.len());
         let next = of.legs.get(leg + 1).map_or(0..0, |next| next.places.clone());
+        // Both sides are expressed on the scale of z of the next piece: (end - centre)/size - z.
         let jump = |((column, state), z): ((&Vec<f64>, &FreeState), &f64)| {
             (column[column.len() - 1] - state.centre.unwrap_or(0.0)) / state.size - z
         };
         let jumps = handed.iter().zip(of.handed(leg)).zip(&z[next]).map(jump).collect();
+        // The last value belongs to the first sample of the next piece, which scores it.
         columns.iter_mut().for_each(|c| c.truncate(of.samples(leg).len()));
         Ok((ShootingValues { signals: columns, jumps }, end))
     }
 
-    /// Errors of one recording over the deviations in the order of its rows, and its jumps over theirs.
+    /// The residual of one recording without priors: errors over deviations, then jumps over theirs.
+    ///
+    /// # Errors
+    /// When a run fails or a value is not finite.
     fn errors(&self, case: usize, z: &[f64]) -> Result<Vec<f64>, RunFailure> {
         let mut values = self.trajectory(case, z, &self.wanted)?;
         for (simulated, measured) in values.signals.iter_mut().zip(&self.cases[case].measured) {
@@ -242,7 +277,7 @@ impl<'a> OutputError<'a> {
         }
     }
 
-    /// Values along one recording over the deviations, where something was measured, and jumps over theirs.
+    /// Flattens `values` into rows: signals at measured samples over their deviations, then jumps over theirs.
     fn weighed(&self, case: usize, values: &ShootingValues) -> Vec<f64> {
         let mut out = Vec::new();
         for (k, (column, measured)) in values.signals.iter().zip(&self.cases[case].measured).enumerate() {
@@ -253,22 +288,23 @@ impl<'a> OutputError<'a> {
         out
     }
 
-    /// The unknowns that move a recording.
+    /// The places in z that affect a recording: all parameters and its own states.
     fn moves(&self, case: usize) -> impl Iterator<Item = usize> {
         (0..self.parameters).chain(self.cases[case].places())
     }
 }
 
-/// What runs along a recording say: values of signals at the samples, and how far each leg misses the start of the next,
-/// in the sizes of the states; or the derivatives of both.
+/// Values along the pieces of a recording, or their derivatives by one unknown.
 #[derive(Clone, Debug, Default)]
 struct ShootingValues {
+    /// One column for each signal, at all samples.
     signals: Vec<Vec<f64>>,
+    /// The jump of each state at each joint, in units of the state's range.
     jumps: Vec<f64>,
 }
 
 impl ShootingValues {
-    /// (a - b)/h
+    /// The difference quotient (a - b)/h.
     fn over(a: &ShootingValues, b: &ShootingValues, h: f64) -> ShootingValues {
         let over = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) / h).collect();
         let signals = a.signals.iter().zip(&b.signals).map(|(a, b)| over(a, b)).collect();
@@ -276,6 +312,7 @@ impl ShootingValues {
     }
 }
 
+/// The variables `wanted`, followed by the states that a joint compares.
 fn with_handed(wanted: &[VarId], handed: &[FreeState]) -> Vec<VarId> {
     wanted.iter().copied().chain(handed.iter().map(|s| s.variable)).collect()
 }
@@ -289,8 +326,12 @@ impl LeastSquares for OutputError<'_> {
         for (errors, case) in found.into_iter().zip(&this.cases) {
             match errors {
                 Ok(mut errors) => {
+                    // Rows of states of all recordings stand last, so jumps wait in `last` until the errors are
+                    // complete.
                     let jumps = errors.split_off(errors.len() - case.conditions());
                     all.extend(errors);
+                    // z of an initial state is in units of its prior deviation, so z itself is the residual of the
+                    // prior.
                     last.extend(&z[case.legs[0].places.clone()]);
                     last.extend(jumps);
                 }
@@ -307,16 +348,20 @@ impl LeastSquares for OutputError<'_> {
         Some(DVector::from_vec(all))
     }
 
+    // Recordings without valid sensitivities are differentiated column by column, all columns in parallel.
     fn jacobian(&mut self, z: &[f64], residual: &DVector<f64>) -> Option<DMatrix<f64>> {
         let mut jacobian = DMatrix::zeros(residual.len(), z.len());
         let by_equations = self.by_equations(z);
         let this = &*self;
         let left = (0..this.cases.len()).filter(|&c| by_equations[c].is_none());
         let jobs: Vec<(usize, usize)> = left.flat_map(|c| this.moves(c).map(move |j| (c, j))).collect();
+        // The end states at z are shared by all columns of a cut recording: a joint moves only the piece behind it.
         let ends: Vec<Vec<State>> = (0..this.cases.len()).map(|c| this.ends(c, z)).collect::<Result<_, _>>().ok()?;
         let columns: Vec<Option<Vec<f64>>> =
             jobs.par_iter().map(|&(c, j)| this.difference(c, j, z, &ends[c])).collect();
+        // The first row about states.
         let states = residual.len() - self.all_states();
+        // Writes a column of one recording: its errors at its own rows, its jumps behind its initial states.
         let mut fill = |c: usize, j: usize, column: Vec<f64>| {
             let case = &this.cases[c];
             let (errors, jumps) = column.split_at(column.len() - case.conditions());
@@ -337,6 +382,7 @@ impl LeastSquares for OutputError<'_> {
         if self.parameters > 0 {
             self.problem.prior_rows(&mut jacobian);
         }
+        // Priors of initial states are z itself: slope 1.
         for place in self.cases.iter().flat_map(|c| c.legs[0].places.clone()) {
             jacobian[(states + place - self.parameters, place)] = 1.0;
         }
@@ -344,13 +390,14 @@ impl LeastSquares for OutputError<'_> {
     }
 
     fn conditions(&self) -> usize {
-        // states at the start of recordings, known to their nominal values, stand among them and do not matter
+        // Joints get large weights. Initial states of recordings are among these rows too, with a weight of 1; leaving
+        // their slopes out of the damping does no harm.
         if self.cases.iter().any(|c| c.legs.len() > 1) { self.all_states() } else { 0 }
     }
 }
 
 impl OutputError<'_> {
-    /// The signals along the first recording with the errors of `residual`.
+    /// Measured and modelled signals along the first recording, from a residual of this problem.
     pub fn trajectories(&self, recordings: &[Recording], residual: &[f64]) -> Vec<SignalTrajectory> {
         let one = |s: &ResidualSeries| {
             let signal = &self.problem.bound.signals[s.signal];
@@ -368,11 +415,15 @@ impl OutputError<'_> {
         self.weights.series.iter().filter(|s| s.recording == 0).map(one).collect()
     }
 
+    /// The first row of a recording among the data.
     fn first_row(&self, case: usize) -> usize {
         self.weights.series.iter().filter(|s| s.recording < case).map(|s| s.rows.len()).sum()
     }
 
-    /// Per recording one column an unknown that moves it, where derivatives carried along hold.
+    /// For each recording the columns of integrated sensitivities, one for each unknown in [`OutputError::moves`];
+    /// `None` where they are not valid.
+    ///
+    /// The first use along a recording checks them and remembers the outcome.
     fn by_equations(&mut self, z: &[f64]) -> Vec<Option<Vec<Vec<f64>>>> {
         let this = &*self;
         let found: Vec<Result<Vec<Vec<f64>>, String>> = (0..this.cases.len())
@@ -399,7 +450,11 @@ impl OutputError<'_> {
         judged.collect()
     }
 
-    /// Derivatives of the weighed errors of a recording, carried along by its run.
+    /// Sensitivities of the residual of one recording, integrated with its run; one column for each unknown that moves
+    /// it.
+    ///
+    /// # Errors
+    /// The reason why finite differences have to be used.
     fn exactly(&self, case: usize, z: &[f64]) -> Result<Vec<Vec<f64>>, String> {
         if let DerivativeValidity::Fails(why) = &self.trust[case] {
             return Err(why.clone());
@@ -419,15 +474,19 @@ impl OutputError<'_> {
             let z = (&z[..self.parameters], &z[leg.places.clone()]);
             let run = (&track, leg.states.as_slice(), before.as_ref());
             let (columns, end) = exact.columns(run, free, z, &wanted, self.runner.tolerance)?;
+            // Columns of a piece belong to the parameters and to the states at its own start only, because the next
+            // piece starts at states of its own.
             let own = (0..self.parameters).chain(leg.places.clone().map(|j| j - of.places().start + self.parameters));
             for (unknown, columns) in own.zip(columns) {
                 let (samples, to) = (of.samples(k), &mut all[unknown]);
                 for (signal, column) in to.signals.iter_mut().zip(&columns) {
                     signal[samples.clone()].copy_from_slice(&column[..samples.len()]);
                 }
+                // d jump/d unknown at the end of this piece.
                 let ends = columns[self.wanted.len()..].iter().zip(handed);
                 ends.enumerate().for_each(|(i, (c, s))| to.jumps[jump + i] = c[c.len() - 1] / s.size);
             }
+            // A jump is the end minus z of the next piece, so its derivative by that z is -1.
             let next = of.legs.get(k + 1).map_or(0..0, |next| next.places.clone());
             next.enumerate().for_each(|(i, j)| all[j - of.places().start + self.parameters].jumps[jump + i] = -1.0);
             jump += handed.len();
@@ -438,19 +497,22 @@ impl OutputError<'_> {
         if finite { Ok(columns) } else { Err("a derivative is not finite".to_owned()) }
     }
 
-    /// Compares with the difference along one direction in which all unknowns move.
+    /// Checks sensitivities against a central difference along one direction that moves all unknowns at once.
     fn agrees(&self, case: usize, z: &[f64], columns: &[Vec<f64>]) -> Result<(), String> {
         // each as far as it moves the errors alike, so that none hides behind another
+        // Each unknown moves far enough to affect the errors equally, so that a wrong column cannot hide behind a
+        // larger one. The cosine varies the sign, so that wrong columns do not cancel each other systematically.
         let size = |c: &Vec<f64>| c.iter().map(|v| v * v).sum::<f64>().sqrt();
         let largest = columns.iter().map(size).fold(0.0, f64::max);
         let reach = |c: &Vec<f64>| if largest > 0.0 { (largest / size(c).max(1e-3 * largest)).min(10.0) } else { 1.0 };
         let share: Vec<f64> = columns.iter().enumerate().map(|(k, c)| reach(c) * (1.0 + k as f64).cos()).collect();
         let mut checks = CHECKS.iter().map(|&step| self.agrees_over(case, z, (columns, &share), step));
+        // The second, shorter step runs only when the first one disagrees.
         let first = checks.next().expect("there are some");
         first.or_else(|why| checks.find_map(Result::ok).ok_or(why))
     }
 
-    /// Compares over one step, in which each unknown takes its share.
+    /// Checks over one step, of which each unknown takes its share; `Err` says why the check failed.
     fn agrees_over(
         &self,
         case: usize,
@@ -470,7 +532,7 @@ impl OutputError<'_> {
         });
         let pairs: Vec<(f64, f64)> = pairs.collect();
         let most = pairs.iter().fold(0.0f64, |m, p| m.max(p.1.abs()));
-        // a sample between the moved times of an event tells nothing
+        // Between the two times at which an event happens, a difference quotient jumps: such samples say nothing.
         let apart = pairs.iter().filter(|p| (p.0 - p.1).abs() > AGREE * most).count();
         if apart as f64 <= (BETWEEN * pairs.len() as f64).ceil() {
             Ok(())
@@ -479,7 +541,9 @@ impl OutputError<'_> {
         }
     }
 
-    /// By central differences of tight runs, which are right across events too; one-sided where a run fails.
+    /// One column of the Jacobian along a recording by central differences, which are right across events too.
+    ///
+    /// One-sided where one of the two runs fails; `None` where both fail.
     fn difference(&self, case: usize, j: usize, z: &[f64], ends: &[State]) -> Option<Vec<f64>> {
         let at = |step: f64| {
             let mut moved = z.to_vec();
@@ -495,7 +559,7 @@ impl OutputError<'_> {
         Some(self.weighed(case, &slope)).filter(|column| column.iter().all(|v| v.is_finite()))
     }
 
-    /// Where the legs of a cut recording end.
+    /// The states at the ends of the pieces of a cut recording; empty where it is not cut.
     fn ends(&self, case: usize, z: &[f64]) -> Result<Vec<State>, RunFailure> {
         let legs = self.cases[case].legs.len();
         let mut ends: Vec<State> = Vec::new();
@@ -506,7 +570,10 @@ impl OutputError<'_> {
         Ok(ends)
     }
 
-    /// What an unknown moves along a recording: the start of a piece its own leg alone, all else stays 0.
+    /// What the unknown `j` affects along a recording. All other values stay 0 and cancel in the difference.
+    ///
+    /// The start of a piece affects this piece alone and the jumps at both its ends. Any other unknown affects
+    /// everything.
     fn part(&self, case: usize, j: usize, z: &[f64], ends: &[State]) -> Result<ShootingValues, RunFailure> {
         let of = &self.cases[case];
         let Some(leg) = (1..of.legs.len()).find(|&k| of.legs[k].places.contains(&j)) else {
@@ -554,6 +621,7 @@ impl WeightedResiduals for OutputError<'_> {
     }
 }
 
+/// The rows of each recording and signal: one row for each sample that holds a number.
 fn series(cases: &[RecordingCase]) -> Vec<ResidualSeries> {
     let mut series = Vec::new();
     let mut row = 0;
@@ -567,7 +635,12 @@ fn series(cases: &[RecordingCase]) -> Vec<ResidualSeries> {
     series
 }
 
-/// The states whose start the model leaves to chance: those that no parameter of the study moves.
+/// The initial states that no estimated parameter decides: they become unknowns.
+///
+/// Each parameter is moved by 1e-3 in z, and the states that the start of the model then takes are compared.
+///
+/// # Errors
+/// When the model cannot start at `z`.
 fn free_states(
     problem: &IdentificationProblem<'_>,
     runner: &ModelRunner<'_>,
@@ -589,6 +662,7 @@ fn free_states(
     let mut free = Vec::new();
     for &v in &system.dae.states {
         let size = system.nominal(v, &values).max(base.values[v.index()].abs());
+        // A parameter that moves the state by more than the rounding of the initial equations decides it.
         let given = moved.iter().any(|m| (m.values[v.index()] - base.values[v.index()]).abs() > 1e-7 * size);
         if !given {
             free.push(FreeState { variable: v, size, centre: None });
@@ -597,7 +671,7 @@ fn free_states(
     Ok(free)
 }
 
-/// All states, for the start of a piece.
+/// All states of the model, unknown at the start of a piece. `place_joints` fills their centres and sizes.
 fn inner_states(problem: &IdentificationProblem<'_>) -> Vec<FreeState> {
     let system = &problem.model.system;
     let mut values = system.layout.values();

@@ -1,24 +1,30 @@
-//! An identification in pictures: the signals met, what is left over, confidence ellipses, profiles.
+//! Figures of an identification for `--plot`: signals, autocorrelations, confidence ellipses and profiles.
+//!
+//! A [`ParameterFit`] and its profiles enter; a [`Figure`] leaves, which `crates/plot` draws.
 
 use super::chance::{pair_size, student};
 use super::{IdentificationProblem, ParameterFit, ProfileLikelihood};
 use bramah_plot::{Figure, FigurePanel, PlotBand, PlotSeries};
 
-/// Most pairs of parameters drawn, those with the strongest correlation first.
+/// Largest number of parameter pairs drawn, those with the strongest correlations.
 const PAIRS: usize = 6;
 /// Points of an ellipse.
 const POINTS: u32 = 72;
 
 impl ParameterFit {
-    /// The edge of the region in which two parameters lie together with 95 %, in their units; `None` where the data say
-    /// nothing about one of them.
+    /// The edge of the joint 95 % confidence region of the parameters `i` and `j`, in their units.
+    ///
+    /// It is an ellipse in z, so on a logarithmic scale it is bent. `None` where the data carry no information about
+    /// one of them.
     pub fn ellipse(&self, problem: &IdentificationProblem<'_>, i: usize, j: usize) -> Option<(Vec<f64>, Vec<f64>)> {
         let (a, b) = (self.spread[i].sqrt(), self.spread[j].sqrt());
         let r = self.correlation[(i, j)].clamp(-1.0, 1.0);
         if !(a * b).is_finite() || a * b <= 0.0 {
             return None;
         }
+        // The Cholesky factor of the correlation matrix maps the unit circle to the ellipse.
         let rest = (1.0 - r * r).sqrt();
+        // The smaller degrees of freedom give the larger, cautious region.
         let size = pair_size(self.degrees[i].min(self.degrees[j]));
         let at = |k: u32| {
             let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / f64::from(POINTS)).sin_cos();
@@ -29,7 +35,7 @@ impl ParameterFit {
     }
 }
 
-/// All panels: signals, autocorrelations, ellipses, profiles.
+/// The figure with all panels: signals, autocorrelations, ellipses, profiles.
 pub fn picture(problem: &IdentificationProblem<'_>, fit: &ParameterFit, profiles: &[ProfileLikelihood]) -> Figure {
     let mut panels: Vec<FigurePanel> = fit.trajectories.iter().map(trajectory).collect();
     panels.extend(fit.residuals.iter().map(autocorrelation));
@@ -38,12 +44,14 @@ pub fn picture(problem: &IdentificationProblem<'_>, fit: &ParameterFit, profiles
     Figure { title: format!("Parameters of {}", problem.model.dae.class), panels, shared_x: false }
 }
 
+/// Name and unit of an axis.
 fn label(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.to_owned() } else { format!("{name} in {unit}") }
 }
 
+/// The panel of a measured and a modelled signal over time.
 fn trajectory(trajectory: &super::SignalTrajectory) -> FigurePanel {
-    // dashes let the measured trajectory show through where the model meets it
+    // Dashes let the measured line show through where the model coincides with it.
     let line = |name: &str, y: Vec<f64>, colour: usize, dashed: bool| PlotSeries {
         name: format!("{} {name}", trajectory.name),
         x: trajectory.times.clone(),
@@ -61,10 +69,12 @@ fn trajectory(trajectory: &super::SignalTrajectory) -> FigurePanel {
     }
 }
 
+/// The panel of an autocorrelation over its lags, with the 95 % band of white residuals.
 fn autocorrelation(test: &super::ResidualTest) -> FigurePanel {
     let count = test.autocorrelation.len() as f64;
     let mut stems = PlotSeries { name: format!("errors of {}", test.name), ..PlotSeries::default() };
     for (lag, r) in (1..).map(f64::from).zip(&test.autocorrelation) {
+        // NaN interrupts the line, so each lag is a vertical stroke of its own.
         stems.x.extend([lag, lag, f64::NAN]);
         stems.y.extend([0.0, *r, f64::NAN]);
     }
@@ -78,7 +88,7 @@ fn autocorrelation(test: &super::ResidualTest) -> FigurePanel {
     }
 }
 
-/// The pairs to draw, strongest correlation first.
+/// The pairs of parameters to draw, strongest correlation first.
 fn pairs(fit: &ParameterFit) -> Vec<(usize, usize)> {
     let p = fit.values.len();
     let mut all: Vec<(usize, usize)> = (0..p).flat_map(|i| (i + 1..p).map(move |j| (i, j))).collect();
@@ -87,6 +97,7 @@ fn pairs(fit: &ParameterFit) -> Vec<(usize, usize)> {
     all
 }
 
+/// The panel of one confidence ellipse with the estimate in it.
 fn pair(problem: &IdentificationProblem<'_>, fit: &ParameterFit, i: usize, j: usize) -> Option<FigurePanel> {
     let (x, y) = fit.ellipse(problem, i, j)?;
     let centre = PlotSeries {
@@ -105,6 +116,7 @@ fn pair(problem: &IdentificationProblem<'_>, fit: &ParameterFit, i: usize, j: us
     })
 }
 
+/// The panel of one profile, with the parabola of the standard deviation and the 95 % level.
 fn profile(problem: &IdentificationProblem<'_>, fit: &ParameterFit, profile: &ProfileLikelihood) -> FigurePanel {
     let free = &problem.free[profile.parameter];
     let (x, y): (Vec<f64>, Vec<f64>) = profile.points.iter().copied().unzip();

@@ -1,10 +1,11 @@
-//! Recordings cut into pieces: each begins at a state of its own that is searched for, and has to end where the next one
-//! begins.
+//! Multiple shooting: recordings cut into pieces, each of which starts at states of its own and has to end where the
+//! next one starts.
 //!
-//! The conditions stand among the rows of the least squares, weighed more and more until nothing of a jump is left:
-//! while they are loose each piece keeps near its part of the recording, which leads a search past the hollows of one
-//! long run. Source: H. G. Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102; the weights as in
-//! J. Nocedal, S. J. Wright, Numerical Optimization, 2006, section 17.1.
+//! `output_error` builds [`RecordingCase`]s and runs along them. The conditions at the joints are rows of the least
+//! squares (a quadratic penalty) whose weight grows from round to round. With small weights each piece stays near its
+//! section of the recording, which avoids local minima of one long run. Source: H. G. Bock, in Modelling of Chemical
+//! Reaction Systems, Springer 1981, 102; penalty weights: J. Nocedal, S. J. Wright, Numerical Optimization, 2006,
+//! section 17.1.
 
 use super::output_error::OutputError;
 use super::runs::RunInputs;
@@ -13,63 +14,65 @@ use bramah_expr::VarId;
 use bramah_solve::State;
 use std::ops::Range;
 
-/// A state at the start of a run that is searched for.
+/// An unknown state at the start of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FreeState {
-    /// The state.
+    /// The model's state.
     pub variable: VarId,
-    /// What one step of z means: at the start of a recording the nominal value, which is also the standard deviation of
-    /// what is known beforehand; inside of it how far the state ranges.
+    /// The change of the state for a step of 1 in z.
+    ///
+    /// At the start of a recording it is the nominal value, which is also the standard deviation of the prior. At a
+    /// joint it is the range of the state along the recording.
     pub size: f64,
-    /// The value at z = 0; `None` for the model's own.
+    /// The value at z = 0; `None` for the value of the model's own start.
     pub centre: Option<f64>,
 }
 
 impl FreeState {
-    /// Puts the state where z says.
+    /// Sets the state to its value at `z`.
     pub fn put(&self, state: &mut State, z: f64) {
         let value = &mut state.values[self.variable.index()];
         *value = self.centre.unwrap_or(*value) + self.size * z;
     }
 }
 
-/// A run along a part of a recording.
+/// One piece of a recording.
 #[derive(Clone, Debug)]
 pub struct ShootingInterval {
-    /// Its first sample.
+    /// Index of its first sample.
     pub first: usize,
-    /// The states at its start that are searched for.
+    /// Its unknown initial states.
     pub states: Vec<FreeState>,
-    /// Their places in z.
+    /// Where these stand in z.
     pub places: Range<usize>,
 }
 
-/// One recording with its unknown states.
+/// A recording with its pieces.
 #[derive(Clone, Debug)]
 pub struct RecordingCase {
-    /// The whole of it.
+    /// Inputs and times of the samples of the whole recording.
     pub track: RunInputs,
-    /// Measured values, one column a signal.
+    /// Measured values, one column for each signal; NaN where nothing was measured.
     pub measured: Vec<Vec<f64>>,
-    /// The runs that follow each other along it.
+    /// The pieces in the order of time; one where the recording is not cut.
     pub legs: Vec<ShootingInterval>,
-    /// Where the first run starts when not at the model's own start.
+    /// The state before the first piece; `None` for the model's own start.
     pub from: Option<State>,
 }
 
 impl RecordingCase {
-    /// The samples of a leg.
+    /// The samples of a piece.
     pub fn samples(&self, leg: usize) -> Range<usize> {
         self.legs[leg].first..self.legs.get(leg + 1).map_or(self.track.times.len(), |next| next.first)
     }
 
-    /// What a leg runs along: to the start of the next one.
+    /// Inputs and times of a piece, up to and including the first sample of the next one.
     pub fn along(&self, leg: usize) -> RunInputs {
         let end = self.samples(leg).end.min(self.track.times.len() - 1);
         if self.legs.len() == 1 { self.track.clone() } else { self.track.between(self.legs[leg].first, end) }
     }
 
-    /// The states that the end of a leg has to hand on.
+    /// The states that are compared at the end of a piece; none for the last one.
     pub fn handed(&self, leg: usize) -> &[FreeState] {
         self.legs.get(leg + 1).map_or(&[], |next| &next.states)
     }
@@ -80,12 +83,12 @@ impl RecordingCase {
         self.legs[0].places.start..last.places.end
     }
 
-    /// How many conditions join its legs.
+    /// How many states are compared at all joints together.
     pub fn conditions(&self) -> usize {
         self.legs[1..].iter().map(|leg| leg.states.len()).sum()
     }
 
-    /// One leg alone, from a state.
+    /// One piece as a recording of its own that starts at `from`.
     fn alone(&self, leg: usize, from: Option<State>) -> RecordingCase {
         let samples = self.samples(leg);
         let track = self.track.between(samples.start, samples.end - 1);
@@ -100,37 +103,39 @@ impl RecordingCase {
     }
 }
 
-/// How pieces of recordings join after a fit.
+/// The jumps left between pieces after a fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContinuityDefects {
-    /// How many places there are where pieces join.
+    /// Number of joints.
     pub count: usize,
-    /// The largest jump left there, as a part of the range of its state.
+    /// The largest jump, relative to the range of its state.
     pub jump: f64,
-    /// That state.
+    /// The name of that state.
     pub state: String,
 }
 
-/// Jumps above this part of a state's range: the pieces are not one motion.
+/// Pieces whose largest jump exceeds this share of a state's range do not count as joined.
 pub const APART: f64 = 1e-3;
-/// Standard deviations of jumps, as parts of the states' ranges: where a search begins, by how much each round is
-/// stricter, and where it ends. The last one is what runs leave of a jump at their tolerance.
+/// Standard deviation of jumps in the first round, relative to the states' ranges.
 pub const LOOSE: f64 = 0.1;
-/// By how much each round is stricter.
+/// Factor of that deviation from round to round.
 pub const STRICTER: f64 = 0.1;
-/// Where it ends.
+/// The deviation of the last round: about what runs at their tolerance leave of a jump.
 pub const TIGHT: f64 = 1e-6;
-/// With which what can be found at all is judged.
+/// The deviation with which the identifiability is checked before the fit.
 pub const USUAL: f64 = 1e-4;
 
-/// The first samples of this many pieces.
+/// The first samples of `pieces` pieces of about equal length.
 pub fn cuts(samples: usize, pieces: usize) -> impl Iterator<Item = usize> {
     (0..pieces).map(move |k| k * samples / pieces)
 }
 
 impl OutputError<'_> {
-    /// Finds, with the parameters as the model has them, where the pieces of a recording begin: each where its own
-    /// samples put it, beginning with where the one before ended. Sizes become how far states range.
+    /// Estimates the states at all joints of a recording, with the parameters fixed.
+    ///
+    /// Each piece is fitted to its own samples and starts where the one before ended. Afterwards `centre` is the
+    /// estimate and `size` the range of the state along the recording. Without a start the remaining joints stay as
+    /// they are.
     pub(super) fn place_joints(&mut self, case: usize, parameters: &[f64]) {
         let legs = self.cases[case].legs.len();
         let inner: Vec<VarId> = self.cases[case].handed(0).iter().map(|s| s.variable).collect();
@@ -139,6 +144,7 @@ impl OutputError<'_> {
         for leg in 0..legs {
             if leg > 0 {
                 let track = self.cases[case].along(leg);
+                // After a piece that could not be run, the model's own start has to do.
                 before = before.or_else(|| self.runner.start(&track, &self.problem.parameters(parameters)).ok());
                 let Some(start) = &before else { return };
                 let states = &mut self.cases[case].legs[leg].states;
@@ -154,14 +160,17 @@ impl OutputError<'_> {
         }
         for leg in &mut self.cases[case].legs[1..] {
             for (state, range) in leg.states.iter_mut().zip(&ranges) {
+                // A state that stands still has no range; a thousandth of its nominal value replaces it.
                 let spread = range.1 - range.0;
                 state.size = if spread.is_finite() { spread.max(1e-3 * state.size) } else { state.size };
             }
         }
     }
 
-    /// The states at the start of a leg from its own samples, the trajectory of the states that pieces hand on, and where it
-    /// ends; a leg that cannot be run has neither.
+    /// Fits the initial states of one piece to its own samples.
+    ///
+    /// Returns them in z, the trajectories of the states that joints compare, and the end state. The trajectories are
+    /// empty and the state is `None` where the piece cannot be run.
     fn fit_alone(
         &self,
         case: usize,
@@ -175,6 +184,7 @@ impl OutputError<'_> {
         let free = VariableBounds { low: vec![f64::NEG_INFINITY; n], high: vec![f64::INFINITY; n] };
         let effort = StoppingCriteria { iterations: 20, ..StoppingCriteria::default() };
         let z = minimise(&mut one, &vec![0.0; n], &free, effort).map_or_else(|| vec![0.0; n], |found| found.z);
+        // The run now goes on to the first sample of the next piece.
         one.cases[0].track = of.along(leg);
         let handed: Vec<VarId> = of.handed(0).iter().map(|s| s.variable).collect();
         match one.leg(0, 0, &z, None, &handed) {
@@ -183,7 +193,7 @@ impl OutputError<'_> {
         }
     }
 
-    /// How the pieces join with this residual; `None` where no recording is cut.
+    /// The jumps left in `residual`; `None` where no recording is cut.
     pub(super) fn joints(&self, residual: &[f64]) -> Option<ContinuityDefects> {
         let count: usize = self.cases.iter().map(|c| c.legs.len() - 1).sum();
         let flat = &self.problem.model.flat;
@@ -192,6 +202,7 @@ impl OutputError<'_> {
         let first = residual.len() - self.all_states();
         for leg in self.cases.iter().flat_map(|c| &c.legs[1..]) {
             for (state, place) in leg.states.iter().zip(leg.places.clone()) {
+                // Rows of jumps are divided by their deviation; this undoes it.
                 let jump = (self.weights.joint * residual[first + place - self.parameters]).abs();
                 if worst.as_ref().is_none_or(|w| jump > w.jump) {
                     worst = Some(ContinuityDefects { count, jump, state: name(state) });

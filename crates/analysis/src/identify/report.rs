@@ -1,4 +1,7 @@
-//! The result of an identification in numbers and in words.
+//! The result of an identification as numbers (`result.json`) and as text for people.
+//!
+//! A problem, its fit, held scores and profiles enter; an [`IdentificationReport`] or a text leaves. The keys of
+//! `result.json` are described in `docs/identify.md`.
 
 use super::{
     Identification, IdentificationProblem, IdentifyMethod, MultistartSummary, ParameterFit, ProfileLikelihood,
@@ -9,56 +12,57 @@ use serde::Serialize;
 use serde_json::{Map, json};
 use std::fmt::Write;
 
-/// `result.json`.
+/// The contents of `result.json`, in the order of its keys.
 #[derive(Clone, Debug, Serialize)]
 pub struct IdentificationReport {
     /// `output error` or `inverse model`.
     pub method: &'static str,
-    /// The parameters found: value, one standard deviation, its degrees of freedom and 95 % interval (null where the data say nothing) and unit.
+    /// For each parameter its value, one standard deviation, degrees of freedom, 95 % interval and unit. `null` stands
+    /// for an infinite number.
     pub parameters: Map<String, serde_json::Value>,
-    /// Groups that the data cannot tell apart; a group of one has no influence.
+    /// Groups of parameters that the data cannot separate; a group of one has no influence.
     pub inseparable: Vec<Vec<String>>,
-    /// Root mean square errors in the signals' units.
+    /// Root mean square errors in the units of the signals.
     pub fit: FitErrors,
-    /// The same over the signals' own variation.
+    /// The same, relative to the standard deviations of the signals.
     pub fit_relative: FitErrors,
-    /// Over how many samples the errors on the train recordings resemble each other.
+    /// For each signal, over how many samples the errors on the train recordings are correlated.
     pub residual_correlation: Map<String, serde_json::Value>,
-    /// What the errors on the train recordings look like.
+    /// For each signal the tests of the errors on the train recordings.
     pub residuals: Map<String, serde_json::Value>,
     /// Correlations of the estimates, in the order of `parameters`.
     pub correlation: Vec<Vec<f64>>,
-    /// Profiles asked for: 95 % interval (null on a side that the data leave open) and points.
+    /// The profiles requested: 95 % interval (`null` on an open side) and points.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub profiles: Map<String, serde_json::Value>,
-    /// `exact`, or `differences` and why.
+    /// `exact`, or `differences` and the reason.
     pub derivatives: String,
-    /// Where searches from several places ended, if there were several.
+    /// How many of several searches ended where; empty for one search.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub starts: Map<String, serde_json::Value>,
-    /// How the pieces of cut recordings join: how many `count`, the largest `jump` left as a part of the range of its
-    /// `state`.
+    /// How the pieces of cut recordings join: the number of joints (`count`), and the largest `jump` left, relative to
+    /// the range of its `state`. Empty where none is cut.
     #[serde(skip_serializing_if = "Map::is_empty")]
     pub joints: Map<String, serde_json::Value>,
-    /// Whether a least value was reached.
+    /// Whether a minimum was reached.
     pub converged: bool,
     /// Parameters that ended at a bound.
     pub at_bound: Vec<String>,
-    /// Steps of the search.
+    /// Iterations of the search.
     pub iterations: usize,
 }
 
-/// By role and signal.
+/// An error for each signal, by the role of the recordings.
 #[derive(Clone, Debug, Serialize)]
 pub struct FitErrors {
-    /// On the recordings used.
+    /// On the train recordings.
     pub train: Map<String, serde_json::Value>,
-    /// On those kept back.
+    /// On the held recordings.
     pub held: Map<String, serde_json::Value>,
 }
 
 impl IdentificationReport {
-    /// Puts the result together.
+    /// Collects the numbers of a fit.
     pub fn new(
         problem: &IdentificationProblem<'_>,
         found: &Identification<'_>,
@@ -102,16 +106,19 @@ impl IdentificationReport {
     }
 }
 
+/// The text of the key `derivatives`.
 fn derivatives(fit: &ParameterFit) -> String {
     fit.differences.as_ref().map_or_else(|| "exact".to_owned(), |why| format!("differences: {why}"))
 }
 
+/// The entries of the key `starts`; none for a single search.
 fn starts(fit: &ParameterFit) -> Map<String, serde_json::Value> {
     let MultistartSummary { tried, here, worse, failed } = fit.starts;
     let all = [("tried", tried), ("here", here), ("worse", worse), ("failed", failed)];
     all.into_iter().filter(|_| tried > 1).map(|(name, n)| (name.to_owned(), json!(n))).collect()
 }
 
+/// The entries of the key `joints`.
 fn joints(fit: &ParameterFit) -> Map<String, serde_json::Value> {
     let entry = |j: &super::ContinuityDefects| {
         [("count", json!(j.count)), ("jump", json!(j.jump)), ("state", json!(j.state))].map(|(n, v)| (n.to_owned(), v))
@@ -119,11 +126,12 @@ fn joints(fit: &ParameterFit) -> Map<String, serde_json::Value> {
     fit.joints.iter().flat_map(entry).collect()
 }
 
-/// JSON knows no infinity.
+/// `None` for an infinite number, which JSON cannot express.
 fn finite(value: f64) -> Option<f64> {
     Some(value).filter(|v| v.is_finite())
 }
 
+/// A signal's name and the entry of the key `residuals`.
 fn residual(test: &ResidualTest) -> (String, serde_json::Value) {
     let follow = |d: &super::InputCrossCorrelation| {
         (d.input.clone(), json!({"lag": d.lag, "correlation": d.correlation, "chance": d.chance}))
@@ -137,16 +145,18 @@ fn residual(test: &ResidualTest) -> (String, serde_json::Value) {
     (test.name.clone(), all)
 }
 
+/// The entry of the key `profiles`.
 fn profile(p: &ProfileLikelihood) -> serde_json::Value {
     let (value, rise): (Vec<f64>, Vec<f64>) = p.points.iter().copied().unzip();
     json!({"interval": [finite(p.interval.0), finite(p.interval.1)], "value": value, "rise": rise})
 }
 
+/// The value of the key `method`.
 fn word(method: IdentifyMethod) -> &'static str {
     if method == IdentifyMethod::Inverse { "inverse model" } else { "output error" }
 }
 
-/// What can be found at all, in words.
+/// The identifiability analysis as text, before the fit.
 pub fn separation_words(problem: &IdentificationProblem<'_>, found: &Identification<'_>) -> String {
     let s = &found.separation;
     let mut text = format!(
@@ -156,6 +166,7 @@ pub fn separation_words(problem: &IdentificationProblem<'_>, found: &Identificat
         rounded(s.condition, 3)
     );
     for (i, (blind, advice)) in s.blind.iter().zip(&found.advice).enumerate() {
+        // Directions that share a group would repeat the same line.
         if s.blind[..i].iter().any(|b| b.group == blind.group) {
             continue;
         }
@@ -173,7 +184,7 @@ pub fn separation_words(problem: &IdentificationProblem<'_>, found: &Identificat
     text
 }
 
-/// The parameters found and how well the signals are met, in words.
+/// Estimates, errors and residual tests as text.
 pub fn fit_words(problem: &IdentificationProblem<'_>, fit: &ParameterFit, held: &[SignalFit]) -> String {
     let mut text = String::new();
     if !fit.converged {
@@ -209,6 +220,7 @@ pub fn fit_words(problem: &IdentificationProblem<'_>, fit: &ParameterFit, held: 
     for (role, fits) in [("train", fit.train.as_slice()), ("held", held)] {
         for f in fits {
             let (rmse, share) = (rounded(f.rmse, 4), rounded(100.0 * f.relative, 3));
+            // Up to two samples the errors are close to white.
             let coloured = if f.correlation > 2.0 {
                 format!(", errors resemble each other over {} samples", rounded(f.correlation, 2))
             } else {
@@ -226,7 +238,7 @@ pub fn fit_words(problem: &IdentificationProblem<'_>, fit: &ParameterFit, held: 
     text
 }
 
-/// What the errors of a signal look like.
+/// The tests of one signal's residuals as text.
 fn residual_words(test: &ResidualTest) -> String {
     let (name, chance) = (&test.name, rounded(test.chance, 2));
     let lags = test.autocorrelation.len();
@@ -243,7 +255,7 @@ fn residual_words(test: &ResidualTest) -> String {
     text
 }
 
-/// Profiles, in words.
+/// The intervals of profiles as text; empty without profiles.
 pub fn profile_words(problem: &IdentificationProblem<'_>, profiles: &[ProfileLikelihood]) -> String {
     let end = |v: f64| if v.is_finite() { rounded(v, 6) } else { "open".to_owned() };
     let line = |p: &ProfileLikelihood| {

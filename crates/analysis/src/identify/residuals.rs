@@ -1,49 +1,53 @@
-//! Tests of what the fit left over: are the errors white, and do they follow an input?
+//! Residual tests: are the errors white, and are they correlated with an input?
 //!
-//! Source: G. M. Ljung, G. E. P. Box, Biometrika 65 (1978) 297; L. Ljung, System Identification, 1999, section 16.6.
+//! Weighted residuals of a fit and the inputs beside them enter; a [`ResidualTest`] for each signal leaves. The fit and
+//! its report read it. Sources: G. M. Ljung, G. E. P. Box, Biometrika 65 (1978) 297; L. Ljung, System Identification,
+//! 1999, section 16.6.
 
 use super::chance::{NORMAL, beyond, two_sided};
 use super::weights::ResidualWeights;
 use crate::study::{BoundStudy, Recording};
 
-/// What the errors of one signal look like.
+/// The tests of one signal's errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResidualTest {
     /// The signal's name; for the inverse model the input's.
     pub name: String,
-    /// How many samples.
+    /// Number of samples in all recordings.
     pub samples: usize,
-    /// Autocorrelation from lag 1 on.
+    /// Autocorrelation from lag 1 on, in samples; the mean is not removed.
     pub autocorrelation: Vec<f64>,
-    /// Ljung and Box's sum over these lags.
+    /// The statistic of Ljung and Box over these lags.
     pub statistic: f64,
-    /// The chance that white errors give a larger sum: small for errors that are not white.
+    /// The probability that white errors give a larger statistic; small for errors that are not white.
     pub chance: f64,
-    /// How the errors follow the inputs; empty for the inverse model.
+    /// Cross-correlation with each input; empty for the inverse model.
     pub inputs: Vec<InputCrossCorrelation>,
 }
 
-/// The strongest correlation of errors with an earlier or present input.
+/// The strongest correlation of errors with a present or earlier value of an input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputCrossCorrelation {
     /// The input's name.
     pub input: String,
-    /// By how many samples the input comes before the error.
+    /// By how many samples the input precedes the error.
     pub lag: usize,
-    /// The correlation there.
+    /// The correlation coefficient there.
     pub correlation: f64,
-    /// The chance of a stronger one at any lag where errors and input have nothing to do with each other.
+    /// The probability of a stronger one at any of the lags, for errors independent of the input.
     pub chance: f64,
 }
 
-/// Most lags looked at.
+/// Largest number of lags.
 const LAGS: usize = 40;
-/// Below this chance a test counts as failed.
+/// A test fails below this probability.
 pub const UNLIKELY: f64 = 0.01;
 
 impl ResidualTest {
-    /// Judges the errors of signal `k`; `None` where there are too few. `inputs` are those that the errors may follow, by
-    /// recording, at the samples of the errors.
+    /// Tests the errors of signal `k`.
+    ///
+    /// `inputs` holds for each input its name and, for each recording, its values at the samples of the errors. `None`
+    /// where the shortest recording allows fewer than two lags, or where all errors are zero.
     pub fn new(
         name: &str,
         k: usize,
@@ -55,6 +59,7 @@ impl ResidualTest {
         let errors: Vec<&[f64]> = of_signal.map(|s| &residual[s.rows.clone()]).collect();
         let samples: usize = errors.iter().map(|e| e.len()).sum();
         let shortest = errors.iter().map(|e| e.len()).filter(|n| *n > 0).min()?;
+        // At lags beyond a fifth of the shortest recording few products remain.
         let lags = LAGS.min(shortest / 5);
         let power = product(&errors, &errors, 0);
         if lags < 2 || power <= 0.0 {
@@ -62,6 +67,7 @@ impl ResidualTest {
         }
         let autocorrelation: Vec<f64> = (1..=lags).map(|lag| product(&errors, &errors, lag) / power).collect();
         let n = samples as f64;
+        // Q = n (n + 2) sum r_k^2/(n - k).
         let part = |(i, r): (usize, &f64)| r * r / (n - (i + 1) as f64);
         let statistic = n * (n + 2.0) * autocorrelation.iter().enumerate().map(part).sum::<f64>();
         let follow = inputs.iter().filter_map(|(name, values)| dependence(name, &errors, values, lags));
@@ -75,23 +81,23 @@ impl ResidualTest {
         })
     }
 
-    /// Within these bounds lie 95 % of the autocorrelations of white errors.
+    /// 95 % of the autocorrelations of white errors lie within plus and minus this value.
     pub fn bound(&self) -> f64 {
         NORMAL / (self.samples as f64).sqrt()
     }
 
-    /// Whether the errors may be white.
+    /// Whether the test of whiteness passes.
     pub fn white(&self) -> bool {
         self.chance >= UNLIKELY
     }
 
-    /// The inputs that the errors follow.
+    /// The inputs with which the errors are significantly correlated.
     pub fn followed(&self) -> impl Iterator<Item = &InputCrossCorrelation> {
         self.inputs.iter().filter(|d| d.chance < UNLIKELY)
     }
 }
 
-/// Per input its values at the samples that a signal's errors belong to, by recording.
+/// For each input its name and its values at the samples at which a signal was measured, by recording.
 pub fn inputs_beside(bound: &BoundStudy, signal: usize, recordings: &[Recording]) -> Vec<(String, Vec<Vec<f64>>)> {
     let beside = |i: usize, r: &Recording| {
         let known = r.inputs[i].iter().zip(&r.signals[signal]).filter(|(_, y)| !y.is_nan());
@@ -101,18 +107,20 @@ pub fn inputs_beside(bound: &BoundStudy, signal: usize, recordings: &[Recording]
     all.map(|(i, input)| (input.name.clone(), recordings.iter().map(|r| beside(i, r)).collect())).collect()
 }
 
-/// The sum of products of `b` with the values of `a` that come `lag` samples later.
+/// The sum over all recordings of b(t) a(t + lag).
 fn product(a: &[impl AsRef<[f64]>], b: &[impl AsRef<[f64]>], lag: usize) -> f64 {
     let one = |(a, b): (&[f64], &[f64])| a.iter().skip(lag).zip(b).map(|(a, b)| a * b).sum::<f64>();
     a.iter().zip(b).map(|(a, b)| one((a.as_ref(), b.as_ref()))).sum()
 }
 
+/// The values minus their mean over all recordings.
 fn centred(values: &[impl AsRef<[f64]>]) -> Vec<Vec<f64>> {
     let all = || values.iter().flat_map(|v| v.as_ref());
     let mean = all().sum::<f64>() / all().count().max(1) as f64;
     values.iter().map(|v| v.as_ref().iter().map(|x| x - mean).collect()).collect()
 }
 
+/// Tests the cross-correlation of errors with one input; `None` where one of them does not vary.
 fn dependence(name: &str, errors: &[&[f64]], input: &[Vec<f64>], lags: usize) -> Option<InputCrossCorrelation> {
     let (e, u) = (centred(errors), centred(input));
     let (e0, u0) = (product(&e, &e, 0), product(&u, &u, 0));
@@ -120,7 +128,8 @@ fn dependence(name: &str, errors: &[&[f64]], input: &[Vec<f64>], lags: usize) ->
     if e0 <= 0.0 || u0 <= 1e-18 * size || !u0.is_finite() {
         return None;
     }
-    // the variance of a correlation between two coloured, independent series
+    // The variance of a correlation of two coloured, independent series is (1 + 2 sum r_e(k) r_u(k))/n (Bartlett). The
+    // taper keeps the sum from going negative by the noise of large lags.
     let both = |lag: usize| product(&e, &e, lag) / e0 * product(&u, &u, lag) / u0;
     let taper = |lag: usize| 1.0 - lag as f64 / (lags + 1) as f64;
     let n: usize = e.iter().map(Vec::len).sum();
@@ -128,6 +137,7 @@ fn dependence(name: &str, errors: &[&[f64]], input: &[Vec<f64>], lags: usize) ->
     let at = |lag: usize| product(&e, &u, lag) / (e0 * u0).sqrt();
     let (lag, correlation) =
         (0..=lags).map(|lag| (lag, at(lag))).max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).expect("lag 0 is there");
+    // Bonferroni's bound for the largest of lags + 1 correlations.
     let chance = ((lags + 1) as f64 * two_sided(correlation / variance.sqrt())).min(1.0);
     Some(InputCrossCorrelation { input: name.to_owned(), lag, correlation, chance })
 }

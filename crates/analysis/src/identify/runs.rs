@@ -1,4 +1,7 @@
-//! Runs of a model along recordings, with the values at the times of the samples.
+//! Runs of a model along recordings, sampled at the times of the measurements.
+//!
+//! A recording becomes [`RunInputs`]; a [`ModelRunner`] runs the model along them and returns columns of values at the
+//! samples. The output error and the diagnosis in `crates/gap` use it.
 
 use crate::study::{BoundStudy, Recording};
 use bramah_circuit::compiled::CompiledModel;
@@ -8,19 +11,19 @@ use bramah_solve::{self as solve, Control, End, RecordedInput, RowSink, Settings
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// A recording as a run needs it.
+/// The inputs of a recording and the times at which values are needed.
 #[derive(Clone, Debug)]
 pub struct RunInputs {
     /// Times of the samples in seconds.
     pub times: Arc<[f64]>,
-    /// The driven inputs.
+    /// The driven inputs over the whole recording.
     pub inputs: Vec<RecordedInput>,
-    /// Rows of the run lie this far apart: the usual distance of samples.
+    /// Distance of the output rows of a run: the median distance of the samples.
     pub interval: f64,
 }
 
 impl RunInputs {
-    /// For the inputs of a study.
+    /// The inputs of a recording, as the study binds them.
     pub fn new(bound: &BoundStudy, recording: &Recording) -> RunInputs {
         let times: Arc<[f64]> = recording.times.as_slice().into();
         let inputs = bound.inputs.iter().zip(&recording.inputs).map(|(input, values)| RecordedInput {
@@ -34,40 +37,40 @@ impl RunInputs {
         RunInputs { inputs: inputs.collect(), interval: steps[steps.len() / 2], times }
     }
 
-    /// The same up to a time, with at least one sample.
+    /// The same inputs with the samples up to a time in seconds, at least one.
     #[must_use]
     pub fn until(&self, time: f64) -> RunInputs {
         let count = self.times.partition_point(|&t| t <= time).max(1);
         RunInputs { times: self.times[..count].into(), ..self.clone() }
     }
 
-    /// The samples from one up to another, that one included.
+    /// The same inputs with the samples from `first` to `last`, both included.
     #[must_use]
     pub fn between(&self, first: usize, last: usize) -> RunInputs {
         RunInputs { times: self.times[first..=last].into(), ..self.clone() }
     }
 }
 
-/// Why a run gave no values.
+/// A run that failed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RunFailure {
     /// The time reached, in seconds.
     pub time: f64,
-    /// What the run said.
+    /// The message of the run's error.
     pub message: String,
 }
 
-/// Runs a model.
+/// Runs a model with a tolerance.
 #[derive(Clone, Copy, Debug)]
 pub struct ModelRunner<'a> {
     /// The model.
     pub model: &'a CompiledModel,
-    /// Relative tolerance.
+    /// Relative tolerance of the integration.
     pub tolerance: f64,
 }
 
 impl ModelRunner<'_> {
-    /// The state at the first sample, as the model's initial equations give it.
+    /// The state at the first sample, from the model's initial equations.
     ///
     /// # Errors
     /// When they have no solution.
@@ -78,7 +81,8 @@ impl ModelRunner<'_> {
         self.simulate(&settings, &track.inputs, None, &mut rows)
     }
 
-    /// The values of `wanted` at the samples, one column each.
+    /// Runs from `from`, or from the model's own start. Returns one column for each of `wanted`, as long as the
+    /// samples.
     ///
     /// # Errors
     /// When the run does not reach the last sample.
@@ -110,6 +114,7 @@ impl ModelRunner<'_> {
         Ok((rows.finish(), state))
     }
 
+    /// The settings of a run between two times, with parameter values.
     fn settings(
         &self,
         start: f64,
@@ -129,6 +134,7 @@ impl ModelRunner<'_> {
         }
     }
 
+    /// Runs and returns the state at the end.
     fn simulate(
         &self,
         settings: &Settings,
@@ -136,6 +142,7 @@ impl ModelRunner<'_> {
         from: Option<&State>,
         rows: &mut SampleCollector<'_>,
     ) -> Result<State, RunFailure> {
+        // A run may have to select other states on the way; the model then recompiles its equations for them.
         let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
         let mut control = Control { reselect: Some(&mut reselect), ..Control::default() };
         let run = solve::simulate(&self.model.system, settings, inputs, from, rows, &mut control);
@@ -147,31 +154,39 @@ impl ModelRunner<'_> {
     }
 }
 
-/// Takes the rows of a run and keeps the values at given times: at an event those after it, between rows straight lines.
+/// Collects values at given times from the rows of a run: at an event those after it, between rows by linear
+/// interpolation.
 pub(super) struct SampleCollector<'a> {
+    /// The times wanted, ascending.
     times: &'a [f64],
+    /// Index of the first time not yet filled.
     next: usize,
+    /// The last row: its time and values.
     before: Option<(f64, Vec<f64>)>,
+    /// One column for each variable.
     columns: Vec<Vec<f64>>,
 }
 
 impl<'a> SampleCollector<'a> {
-    /// For the columns of `wanted`.
+    /// A collector for the columns of `wanted`.
     pub(super) fn new(times: &'a [f64], wanted: &[VarId]) -> Self {
         SampleCollector { times, next: 0, before: None, columns: vec![Vec::with_capacity(times.len()); wanted.len()] }
     }
 
+    /// How close to sample `k` a row counts as at the same time, in seconds.
     fn slack(&self, k: usize) -> f64 {
         let near = if k + 1 < self.times.len() { self.times[k + 1] - self.times[k] } else { 0.0 };
         1e-6 * near.max(1e-9 * self.times[k].abs())
     }
 
-    /// Fills the samples that lie clearly before `time`.
+    /// Fills the samples that lie before `time` by more than their slack, by interpolation to this row.
     fn pass(&mut self, time: f64, values: &[f64]) {
         while self.next < self.times.len() && self.times[self.next] + self.slack(self.next) < time {
             let at = self.times[self.next];
             let (t0, v0) = self.before.as_ref().map_or((time, values), |(t, v)| (*t, v.as_slice()));
             let part = if time > t0 { ((at - t0) / (time - t0)).clamp(0.0, 1.0) } else { 0.0 };
+            // Samples at the last row take its values exactly, not a trace of the next row, which may lie beyond an
+            // event.
             let part = if part < 1e-5 { 0.0 } else { part };
             for (column, (a, b)) in self.columns.iter_mut().zip(v0.iter().zip(values)) {
                 column.push(a + part * (b - a));
@@ -180,7 +195,7 @@ impl<'a> SampleCollector<'a> {
         }
     }
 
-    /// One column a variable, as long as the times.
+    /// The columns, each as long as the times. Samples behind the last row take its values.
     pub(super) fn finish(mut self) -> Vec<Vec<f64>> {
         if let Some((_, values)) = self.before.take() {
             self.pass(f64::INFINITY, &values);
@@ -191,6 +206,7 @@ impl<'a> SampleCollector<'a> {
 
 impl RowSink for SampleCollector<'_> {
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
+        // A later row at the same time, after an event, replaces this one before any sample there is filled.
         self.pass(time, values);
         self.before = Some((time, values.to_vec()));
         ControlFlow::Continue(())

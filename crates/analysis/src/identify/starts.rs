@@ -1,29 +1,33 @@
-//! A search from several places, so that a least value near the start is not taken for the least of all.
+//! Multistart: searches from several places, so that a local minimum near the start is recognised as such.
+//!
+//! A problem and a residual enter; the best minimum and a [`MultistartSummary`] leave.
 
 use super::{IdentificationProblem, LeastSquaresSolution, WeightedResiduals, search, search_once};
 use crate::sweep::XorshiftGenerator;
 
-/// Where searches from several places ended.
+/// How many searches ended where.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct MultistartSummary {
-    /// How many places there were, the values of the model among them.
+    /// Number of searches, the one from the values of the model included.
     pub tried: usize,
-    /// How many ended where the best one did: sums of squares within a thousandth.
+    /// How many ended at the best sum of squares, within a thousandth.
     pub here: usize,
-    /// How many ended at a larger sum of squares.
+    /// How many ended at a larger one.
     pub worse: usize,
-    /// How many places the model could not be run at.
+    /// How many could not run the model at their start.
     pub failed: usize,
 }
 
-/// Sums of squares that differ by less than this part are the same end.
+/// Sums of squares within this relative difference count as the same minimum.
 const SAME: f64 = 1e-3;
-/// How far a place lies at most from the model's value where neither bounds nor tolerances are closer: a factor of e
-/// on a logarithmic scale, once the usual value on a linear one.
+/// Largest distance in z between a random place and the model's values: a factor of e on a logarithmic scale, the usual
+/// value on a linear one. Bounds and priors may make it smaller.
 const REACH: f64 = 1.0;
 
-/// Searches from the values of the model and from `count - 1` places around them, and goes on from the best end. The
-/// same `seed` gives the same places.
+/// Searches from the values of the model and from `count - 1` random places, and continues from the best end.
+///
+/// `floor` holds the smallest deviation of each signal. The same `seed` gives the same places. `None` when no search
+/// found a minimum.
 pub(super) fn search_several(
     problem: &IdentificationProblem<'_>,
     model: &mut dyn WeightedResiduals,
@@ -33,7 +37,8 @@ pub(super) fn search_several(
 ) -> Option<(LeastSquaresSolution, MultistartSummary)> {
     let unknowns = model.unknowns();
     let mut random = XorshiftGenerator::new(seed);
-    // the first end sets the scale by which all are compared
+    // Only this search learns the deviations of the signals. All others keep them, so that sums of squares are
+    // comparable.
     let first = search(problem, model, floor, &vec![0.0; unknowns]);
     let mut ends: Vec<LeastSquaresSolution> = first.into_iter().collect();
     for _ in 1..count {
@@ -47,13 +52,13 @@ pub(super) fn search_several(
     let here = ends.iter().filter(|e| cost(e) <= (1.0 + SAME) * least).count();
     let starts =
         MultistartSummary { tried: count.max(1), here, worse: ends.len() - here, failed: count.max(1) - ends.len() };
+    // Unless another end is clearly better, the result is the same as that of a single search.
     let stays = cost(&ends[0]) <= (1.0 + SAME) * least;
     let found = if stays { ends.swap_remove(0) } else { search(problem, model, floor, &ends[best].z)? };
     Some((found, starts))
 }
 
-/// A place within the bounds, and within three deviations of what is known beforehand; initial states as the model has
-/// them.
+/// A random place within the bounds and within three deviations of the priors; free states as the model has them.
 fn place(problem: &IdentificationProblem<'_>, unknowns: usize, random: &mut XorshiftGenerator) -> Vec<f64> {
     let bounds = problem.bounds(unknowns);
     let mut z = vec![0.0; unknowns];

@@ -1,4 +1,7 @@
-//! From a study file to its parameters.
+//! The whole identification in one call: from a study file to estimated parameters.
+//!
+//! A world of files and the path of a study enter; an [`Identified`] with numbers, text and warnings leaves. The
+//! library `bramah` and the Python package call it; the command takes the single steps, because it prints between them.
 
 use super::{Identification, IdentificationProblem, IdentificationReport, IdentifyMethod, doubts, fit_words};
 use crate::study::{Recording, RecordingRole, Study};
@@ -10,16 +13,16 @@ use bramah_syntax::world::World;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Parameters found from recordings.
+/// The result of [`identify`].
 #[derive(Clone, Debug)]
 pub struct Identified {
     /// The numbers; serializes as the JSON of `bramah identify`.
     pub report: IdentificationReport,
-    /// The same in words for people.
+    /// The result as text.
     pub words: String,
     /// Warnings about study, recordings and fit.
     pub diagnostics: Vec<Diagnostic>,
-    /// The texts that these point into.
+    /// The texts that the warnings point into.
     pub sources: Arc<Sources>,
 }
 
@@ -49,14 +52,14 @@ pub fn identify(world: &dyn World, study: &Path) -> Result<Identified, Error> {
     identify_as(world, study, None, &IdentifyOptions::default())
 }
 
-/// How parameters are searched for.
+/// Options of [`identify_as`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IdentifyOptions {
-    /// Against which errors.
+    /// The residual to minimise.
     pub method: IdentifyMethod,
-    /// From so many places, the values of the model first.
+    /// Number of searches; the first one starts from the values of the model.
     pub starts: usize,
-    /// Draws the places.
+    /// Seed of the random starts.
     pub seed: u64,
 }
 
@@ -66,7 +69,7 @@ impl Default for IdentifyOptions {
     }
 }
 
-/// The same with a choice of method and starts, and with recordings from another folder than that of the study.
+/// As [`identify`], with options, and with recordings from the folder `data` in place of the folder of the study.
 ///
 /// # Errors
 /// As [`identify`].
@@ -92,6 +95,7 @@ pub fn identify_as(
     let problem = IdentificationProblem::new(&model, &bound, &train).map_err(|d| said.error(d))?;
     let found = Identification::new(&problem, &train, asked.method).map_err(|d| said.error(vec![d]))?;
     let fit = found.fit_from(asked.starts, asked.seed).map_err(|d| said.error(vec![d]))?;
+    // Held recordings are read only after the fit, so that they cannot influence it.
     let held = if bound.has(RecordingRole::Held) { load(RecordingRole::Held, &mut said)? } else { Vec::new() };
     let held = match held.is_empty() {
         true => Vec::new(),
@@ -107,7 +111,7 @@ pub fn identify_as(
     })
 }
 
-/// What was said so far, with the texts it points into.
+/// Warnings so far, with the texts that they point into.
 #[derive(Default)]
 struct IdentificationMessages {
     sources: Sources,
@@ -115,12 +119,14 @@ struct IdentificationMessages {
 }
 
 impl IdentificationMessages {
+    /// The value of a stage, whose warnings are kept; an error where the stage has none.
     fn take<T>(&mut self, checked: StageResult<T>) -> Result<T, Error> {
         let Some(value) = checked.value else { return Err(self.error(checked.diagnostics)) };
         self.diagnostics.extend(checked.diagnostics);
         Ok(value)
     }
 
+    /// An error with these diagnostics.
     fn error(&self, diagnostics: Vec<Diagnostic>) -> Error {
         Error { diagnostics, sources: Arc::new(self.sources.clone()) }
     }

@@ -224,7 +224,8 @@ fn derivatives_of_runs_agree_with_differences() {
     });
 }
 
-/// An unstable motion under feedback: one run over the whole recording leaves it, pieces that find their own start do not.
+/// An unstable motion under feedback: one run over the whole recording leaves it, pieces that find their own start do
+/// not.
 #[test]
 fn pieces_of_an_unstable_recording() {
     let model =

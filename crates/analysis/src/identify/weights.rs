@@ -1,37 +1,40 @@
-//! Weights of residuals: one standard deviation a signal, widened where neighbouring residuals resemble each other.
+//! Weights of the residual: one standard deviation for each signal, enlarged where neighbouring errors are correlated.
+//!
+//! Both residuals (`output_error`, `inverse`) hold a [`ResidualWeights`]. The search learns the deviations from the
+//! errors between its rounds.
 
 use crate::estimate::{ResidualSeries, correlation};
 
-/// How the rows of a residual are weighed.
+/// Weights of the rows of a residual.
 #[derive(Clone, Debug)]
 pub struct ResidualWeights {
-    /// The rows that come from data; others follow them.
+    /// The rows of data, one series for each recording and signal; other rows follow them.
     pub series: Vec<ResidualSeries>,
-    /// Per signal what its errors are divided by: its standard deviation times the root of its correlation time.
+    /// For each signal the divisor of its errors: its deviation times the root of its correlation time.
     pub sigma: Vec<f64>,
-    /// Per signal the standard deviation of its errors.
+    /// For each signal the standard deviation of its errors, in its unit.
     pub deviation: Vec<f64>,
-    /// Per signal over how many samples its errors resemble each other.
+    /// For each signal over how many samples neighbouring errors are correlated.
     pub correlation: Vec<f64>,
-    /// Standard deviation of jumps between pieces of a recording, as a part of the states' ranges.
+    /// Standard deviation of the jumps between pieces of a recording, relative to the states' ranges.
     pub joint: f64,
 }
 
 impl ResidualWeights {
-    /// With first guesses of the standard deviations.
+    /// Weights with first values of the deviations.
     pub fn new(series: Vec<ResidualSeries>, sigma: Vec<f64>) -> ResidualWeights {
         let correlation = vec![1.0; sigma.len()];
         ResidualWeights { series, correlation, deviation: sigma.clone(), sigma, joint: super::pieces::USUAL }
     }
 
-    /// Divides errors by their standard deviations.
+    /// Divides errors by the `sigma` of their signals, in place.
     pub fn scale(&self, errors: &mut [f64]) {
         for s in &self.series {
             errors[s.rows.clone()].iter_mut().for_each(|e| *e /= self.sigma[s.signal]);
         }
     }
 
-    /// The root mean square of a signal's errors, in its unit; `None` where there are none.
+    /// The root mean square of a signal's errors, in its unit, from a weighted residual; `None` where it has no sample.
     pub fn rms(&self, signal: usize, residual: &[f64]) -> Option<f64> {
         let rows = self.series.iter().filter(|s| s.signal == signal);
         let (mut sum, mut count) = (0.0, 0usize);
@@ -42,20 +45,22 @@ impl ResidualWeights {
         (count > 0).then(|| self.sigma[signal] * (sum / count as f64).sqrt())
     }
 
-    /// Over how many samples a signal's errors resemble each other.
+    /// Over how many samples a signal's errors are correlated (see [`correlation::time`]).
     pub fn correlation_time(&self, signal: usize, residual: &[f64]) -> f64 {
         let of_signal = self.series.iter().filter(|s| s.signal == signal);
         correlation::mean_time(of_signal.map(|s| &residual[s.rows.clone()]))
     }
 
-    /// Takes the standard deviations from a residual; never below `floor`, in the signals' units. Returns the largest
-    /// relative change.
+    /// Sets the deviations from a weighted residual, but not below `floor`, in the signals' units.
+    ///
+    /// Returns the largest change of the logarithm of a `sigma`.
     pub fn learn(&mut self, residual: &[f64], floor: &[f64]) -> f64 {
         let mut change = 0.0f64;
         for k in 0..self.sigma.len() {
             let Some(rms) = self.rms(k, residual) else { continue };
             self.correlation[k] = self.correlation_time(k, residual);
             self.deviation[k] = rms.max(floor[k]).max(f64::MIN_POSITIVE);
+            // n samples correlated over tau of them carry the information of n/tau independent ones.
             let sigma = self.deviation[k] * self.correlation[k].sqrt();
             change = change.max((sigma / self.sigma[k]).ln().abs());
             self.sigma[k] = sigma;

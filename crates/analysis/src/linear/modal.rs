@@ -24,8 +24,8 @@ pub struct Pole {
     pub together: usize,
 }
 
-/// Eigenvalues this close, as a part of their size, count as one: of two that are equal but for rounding, a defect of the
-/// matrix may have driven the eighth digit apart.
+/// Eigenvalues this close, as a part of their size, count as one: of two that are equal but for rounding, a defect of
+/// the matrix may have driven the eighth digit apart.
 const COINCIDE: f64 = 1e-6;
 
 /// Shares below this are not worth telling.
@@ -33,8 +33,8 @@ const LEAST_SHARE: f64 = 0.02;
 
 /// Poles in the order of their magnitude. Empty where the eigenvalues cannot be found.
 ///
-/// Participation of state k in mode i is |w_ki v_ki| with left and right eigenvectors. Source: I. J. Perez-Arriaga,
-/// G. C. Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117. States that act on each other in a circle have their
+/// Participation of state k in mode i is |w_ki v_ki| with left and right eigenvectors. Source: I. J. Perez-Arriaga, G.
+/// C. Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117. States that act on each other in a circle have their
 /// poles for themselves: there the product is zero for all other states. So poles of different circles may coincide, as
 /// those of two integrators in a row do, and each still names its own states. Of poles that coincide within a circle no
 /// eigenvector belongs to one alone: each has the share of the states in what all of them span, the diagonal of the
@@ -135,8 +135,8 @@ fn participation(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: 
     shares
 }
 
-/// On the space that belongs to so many eigenvalues at one place, along all others; the nearest of these is at a distance
-/// of `gap`.
+/// On the space that belongs to so many eigenvalues at one place, along all others; the nearest of these is at a
+/// distance of `gap`.
 fn projector(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64) -> Option<DMatrix<Complex<f64>>> {
     let right = invariant(a, eigenvalue, count, gap)?;
     let left = invariant(&a.transpose(), eigenvalue, count, gap)?.transpose();
@@ -168,8 +168,8 @@ fn invariant(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64)
 
 /// Zeros of the way from one input to one output, in the order of their magnitude.
 ///
-/// With r derivatives of the output free of the input, they are the eigenvalues of A - b c A^r / (c A^(r-1) b) but for r
-/// at zero (the zero dynamics); with a direct path, of A - b c / d.
+/// With r derivatives of the output free of the input, they are the eigenvalues of A - b c A^r / (c A^(r-1) b) but for
+/// r at zero (the zero dynamics); with a direct path, of A - b c / d.
 pub fn zeros(model: &StateSpace, input: usize, output: usize) -> Vec<Complex<f64>> {
     let way = between(model, input, output);
     let n = way.len();

@@ -95,9 +95,9 @@ impl VectorField {
     }
 }
 
-/// Builds the form of `chosen`, which was made by [`LinearizationSetup::scheduled`], around a state. `grid` holds the values of each
-/// scheduling quantity, or nothing for five over its range. `ranges` are the smallest and largest values of
-/// [`LinearizationSetup::quantities`], for the random check.
+/// Builds the form of `chosen`, which was made by [`LinearizationSetup::scheduled`], around a state. `grid` holds the
+/// values of each scheduling quantity, or nothing for five over its range. `ranges` are the smallest and largest values
+/// of [`LinearizationSetup::quantities`], for the random check.
 ///
 /// # Errors
 /// [`Code::BadArgument`] when a scheduling quantity is not affine in one state or input, or where the equations have no

@@ -7,9 +7,9 @@ use nalgebra::DMatrix;
 use std::fmt::Write as _;
 
 impl QuasiLpvModel {
-    /// A MATLAB file of version 4: `rho` with a row for each point of the grid, `A` and `B` of all points side by side (those
-    /// of point k are `A(:, (k-1)*n+1 : k*n)` and `B(:, (k-1)*m+1 : k*m)`, the last column of `B` being that of the
-    /// constant input 1), and the operating point `x0`, `u0`.
+    /// A MATLAB file of version 4: `rho` with a row for each point of the grid, `A` and `B` of all points side by side
+    /// (those of point k are `A(:, (k-1)*n+1 : k*n)` and `B(:, (k-1)*m+1 : k*m)`, the last column of `B` being that of
+    /// the constant input 1), and the operating point `x0`, `u0`.
     pub fn mat(&self) -> Vec<u8> {
         let mut out = Vec::new();
         let mut put = |name: &str, rows: usize, values: &[f64]| {
@@ -29,8 +29,8 @@ impl QuasiLpvModel {
         out
     }
 
-    /// A Modelica model: states and inputs are the quantities themselves, the matrices are interpolated between the points
-    /// of the grid, linearly in each scheduling quantity, and go on beyond its ends.
+    /// A Modelica model: states and inputs are the quantities themselves, the matrices are interpolated between the
+    /// points of the grid, linearly in each scheduling quantity, and go on beyond its ends.
     pub fn modelica(&self, name: &str) -> String {
         let entries = self.entries();
         let mut out = format!("model {name} \"{}, quasi-linear over ({})\"\n", self.class, self.rho.join(", "));

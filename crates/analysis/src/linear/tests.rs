@@ -67,8 +67,8 @@ fn modes(text: &str) -> Vec<(f64, usize, Vec<(String, i64)>)> {
     poles(&model).iter().map(|p| (p.re, p.together, shares(p))).collect()
 }
 
-/// Two lags of one rate beside each other, two in a row and two integrators in a row: the first ones name one state, the
-/// others the other one.
+/// Two lags of one rate beside each other, two in a row and two integrators in a row: the first ones name one state,
+/// the others the other one.
 #[test]
 fn poles_that_coincide_name_their_own_states() {
     for (first, second) in [("-2*x", "-2*z"), ("-2*x", "x - 2*z"), ("z", "0.5*far"), ("1", "x")] {
@@ -88,8 +88,8 @@ fn poles_that_coincide_name_their_own_states() {
     }
 }
 
-/// A critically damped mass, and two masses of 1 and 2 with a spring between them that move on together: their two poles
-/// belong to the same states.
+/// A critically damped mass, and two masses of 1 and 2 with a spring between them that move on together: their two
+/// poles belong to the same states.
 #[test]
 fn poles_that_coincide_within_a_circle_are_told_together() {
     let damped = modes(
@@ -183,8 +183,8 @@ fn the_quasi_linear_form_is_exact_where_the_rest_is_linear() {
     assert_eq!(exact.csv().lines().count(), 5);
 }
 
-/// The written model follows the model it comes from: exactly scheduled it differs by the interpolation between the points of
-/// its grid, and at a point of the grid not at all.
+/// The written model follows the model it comes from: exactly scheduled it differs by the interpolation between the
+/// points of its grid, and at a point of the grid not at all.
 #[test]
 fn the_written_form_simulates() {
     let form = quasi_linear_at(&["p", "n"], &[vec![12.0, 0.0, 3.0, 6.0], vec![0.0, 900.0, 1200.0, 1500.0, 1800.0]]);
@@ -203,8 +203,8 @@ fn the_written_form_simulates() {
     assert!(form.mat().len() > 20 * 8 * (4 + 6));
 }
 
-/// The largest error of a shipped model's form over the terms of its rows, from states within a fifth (at least `least`)
-/// of where its run, cut at `stop`, ends.
+/// The largest error of a shipped model's form over the terms of its rows, from states within a fifth (at least
+/// `least`) of where its run, cut at `stop`, ends.
 fn largest_error(class: &str, stop: Option<f64>, inputs: &[&str], rho: &[&str], least: f64) -> f64 {
     let request = Request { source: class.into(), ..Request::default() };
     let simulation = Simulation::compile(&MemoryWorld::default(), &request).expect("ships");
@@ -227,7 +227,8 @@ fn largest_error(class: &str, stop: Option<f64>, inputs: &[&str], rho: &[&str], 
     found.error.iter().fold(0.0f64, |m, e| m.max(*e))
 }
 
-/// P2's circuit without the low side: exact with all that it schedules; the paper's shorter list misses friction's part.
+/// P2's circuit without the low side: exact with all that it schedules; the paper's shorter list misses friction's
+/// part.
 #[test]
 fn the_closed_circuit_is_quasi_linear() {
     let error = |rho: &[&str]| largest_error("ClosedCircuit.Reduced", None, &["f", "u"], rho, 0.0);

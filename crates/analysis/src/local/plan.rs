@@ -1,4 +1,5 @@
-//! What of a lifted system is a state, a parameter, an input, an output, and which unknowns follow from implicit equations.
+//! What of a lifted system is a state, a parameter, an input, an output, and which unknowns follow from implicit
+//! equations.
 
 use crate::lift::{AugmentedState, StateAugmentedModel};
 use bramah_expr::VarId;

@@ -20,8 +20,8 @@ pub struct Recording {
     pub times: Vec<f64>,
     /// One column an entry of [`BoundStudy::inputs`], each as long as `times`, without NaN.
     pub inputs: Vec<Vec<f64>>,
-    /// One column an entry of [`BoundStudy::signals`], each as long as `times`, with the sign applied. NaN where nothing
-    /// was measured.
+    /// One column an entry of [`BoundStudy::signals`], each as long as `times`, with the sign applied. NaN where
+    /// nothing was measured.
     pub signals: Vec<Vec<f64>>,
     /// Into how many pieces a run along it is cut; 1 for none.
     pub pieces: usize,

@@ -1,8 +1,8 @@
 //! Studies: a model, recordings of its bench and what is known about its parameters, as TOML.
 //!
 //! `identify` and `gap` read the same file. [`parse`] makes a [`Study`] of a text; [`Study::bind`] ties its names to
-//! the variables of a compiled model; [`BoundStudy::load`] reads the recordings of one role, so that held ones may be read
-//! last. The reference of the file is `docs/study.md`.
+//! the variables of a compiled model; [`BoundStudy::load`] reads the recordings of one role, so that held ones may be
+//! read last. The reference of the file is `docs/study.md`.
 
 mod amount;
 mod bind;

@@ -41,8 +41,8 @@ impl SweepPlan {
     /// Ties a sweep to a model.
     ///
     /// # Errors
-    /// [`Code::BadExperiment`]: names that the model does not have, parameters on which its structure depends, values that
-    /// do not fit, expressions that cannot be read.
+    /// [`Code::BadExperiment`]: names that the model does not have, parameters on which its structure depends, values
+    /// that do not fit, expressions that cannot be read.
     pub fn new(model: &CompiledModel, sweep: &ParameterSweep) -> Result<SweepPlan, Vec<Diagnostic>> {
         let mut found = Vec::new();
         let mut varied = Vec::new();

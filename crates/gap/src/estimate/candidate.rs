@@ -8,12 +8,12 @@
 //! size, positive shapes by their logarithm. All bounds, priors and sensitivities are in these units.
 
 use super::super::data::RecordingData;
-use super::super::policy::{BENT, PIECES};
 use super::super::problem::{AssembledModel, HypothesisValues};
 use super::exponential;
 use super::map::SignalWeights;
 use super::simulation::RecordingRun;
 use super::start::ParameterisedModel;
+use crate::policy::{BENT, PIECES};
 use bramah_expr::VarId;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

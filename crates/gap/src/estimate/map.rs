@@ -10,9 +10,9 @@
 
 use super::super::clock::Deadline;
 use super::super::data::RecordingData;
-use super::super::policy::{DOUBLINGS, ITERATIONS, LEAST, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
 use super::super::problem::HypothesisValues;
 use super::candidate::{CandidateModel, FitCoordinate, ModelEvaluation, RecordingResiduals, SensitivityProducts};
+use crate::policy::{DOUBLINGS, ITERATIONS, LEAST, SETTLED, SETTLED_PART, SETTLED_SQUARE, TRIALS};
 use bramah_analysis::estimate::correlation;
 use nalgebra::{DMatrix, DVector};
 

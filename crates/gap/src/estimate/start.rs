@@ -6,10 +6,10 @@
 //! sensitivities. Called by `candidate` at the beginning of every run. Method: `docs/gap_method.md`, "Simulation".
 
 use super::super::data::{InputSegment, RecordingData};
-use super::super::policy::SURE;
 use super::candidate::RecordingResiduals;
 use super::exponential;
 use super::simulation::{RecordingRun, TrajectorySensitivities};
+use crate::policy::SURE;
 use bramah_analysis::estimate::correlation;
 use bramah_analysis::local::{EvaluationPlan, LocalEvaluator};
 use nalgebra::{Cholesky, DMatrix, DVector};

@@ -7,12 +7,12 @@
 
 use super::super::clock::Deadline;
 use super::super::estimate::ModelFit;
-use super::super::policy::ALPHA;
 use super::super::problem::{DiagnosisProblem, HypothesisValues};
 use super::compare::{closed, needed};
 use super::confirm::{HoldoutConfirmation, HoldoutRecordings};
 use super::criteria::{CrossValidationScore, RejectionReason, RivalHypothesis, SelectionCriteria};
 use super::weighed::{CrossValidatedFit, saved, widened};
+use crate::policy::ALPHA;
 use rayon::prelude::*;
 
 /// A hypothesis as it was judged in one step.

@@ -3,8 +3,8 @@
 //! Two statistics: a t statistic of loss differences over blocks, and a log likelihood ratio that is an e-value.
 //! Also the noise-free gap of a signal and of all signals. Called by the other modules of `select`.
 
-use super::super::policy::{ALPHA, DELTA, LEAST};
 use super::folds::LeftOutErrors;
+use crate::policy::{ALPHA, DELTA, LEAST};
 
 /// Noise and full scale of each sensor, SI.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,10 +7,10 @@
 use super::super::data::RecordingData;
 use super::super::estimate::candidate::RecordingResiduals;
 use super::super::estimate::{CandidateModel, ModelFit};
-use super::super::policy::{ACCURACY, ALPHA, DELTA, OPENS};
 use super::compare::{SensorAccuracy, gap, needed, signal_gap};
 use super::folds::LeftOutErrors;
 use super::matched::evidence;
+use crate::policy::{ACCURACY, ALPHA, DELTA, OPENS};
 
 /// Comparison of a model with the one before on held recordings.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,11 +5,11 @@
 //! Method: the table of `docs/gap_method.md`, "When an effect is accepted".
 
 use super::super::data::RecordingData;
-use super::super::policy::{ACCURACY, ALPHA, DELTA, NEAR, SURE};
 use super::compare::{SensorAccuracy, differences, loss, needed, t_statistic};
 use super::confirm::HoldoutConfirmation;
 use super::matched::{AdjustableModel, evidence, refitted};
 use super::weighed::{CrossValidatedFit, ahead, left_by, saved};
+use crate::policy::{ACCURACY, ALPHA, DELTA, NEAR, SURE};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

@@ -8,7 +8,7 @@
 use super::super::data::RecordingData;
 use super::super::estimate::ModelFit;
 use super::super::estimate::candidate::{RecordingResiduals, piece};
-use super::super::policy::{BLOCKS, DAMPINGS, PIECES, SETTLED, WHOLE_RECORDINGS};
+use crate::policy::{BLOCKS, DAMPINGS, PIECES, SETTLED, WHOLE_RECORDINGS};
 use std::ops::Range;
 
 /// Left-out errors of a model with their mean squares by block.

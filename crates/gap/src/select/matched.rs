@@ -14,10 +14,10 @@
 use super::super::data::RecordingData;
 use super::super::estimate::candidate::{RecordingResiduals, piece};
 use super::super::estimate::{ModelFit, NormalEquations, SignalWeights};
-use super::super::policy::LEAST;
 use super::compare::SensorAccuracy;
 use super::folds::{self, FoldScheme};
 use super::weighed::CrossValidatedFit;
+use crate::policy::LEAST;
 use nalgebra::DVector;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex64;

@@ -7,9 +7,9 @@
 use super::super::effects::{EffectCoefficient, ShapeParameter};
 use super::super::estimate::{CandidateModel, FitCoordinate};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{ACCURACY, GRID};
 use super::super::problem::{DiagnosisProblem, HypothesisValues};
 use super::compare::SensorAccuracy;
+use crate::policy::{ACCURACY, GRID};
 use bramah_syntax::diag::Diagnostic;
 
 /// A shape with a grid may lie beyond the ends of its grid by this factor.

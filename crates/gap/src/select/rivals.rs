@@ -8,12 +8,12 @@ use super::super::clock::Deadline;
 use super::super::effects::EffectCoefficient;
 use super::super::estimate::{FitTask, ModelFit, SignalWeights};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{ACCURACY, DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH, TRIED};
 use super::super::problem::DiagnosisProblem;
 use super::compare::{SensorAccuracy, needed, total_gap};
 use super::criteria::RivalHypothesis;
 use super::screen::{FitStart, ScreenedHypothesis, ScreeningContext, by_turns};
 use super::weighed::{CrossValidatedFit, at_nominal, at_the_noise, from_nominal, no_worse, widened};
+use crate::policy::{ACCURACY, DELTA, FRONT, HOPED, OTHER_WEIGHTING, ROUGH, TRIED};
 use rayon::prelude::*;
 
 /// Result of fitting the hypotheses of a step.

@@ -13,11 +13,11 @@ use super::super::estimate::candidate::{RecordingResiduals, SensitivityProducts}
 use super::super::estimate::map::squares;
 use super::super::estimate::{CandidateModel, ModelFit, NormalEquations};
 use super::super::hypotheses::Hypothesis;
-use super::super::policy::{DECADES, OTHER_WEIGHTING, SCANNED, SIZES, SLOWER, STARTS, UNCHANGED};
 use super::super::problem::{DiagnosisProblem, HypothesisValues};
 use super::compare::{SensorAccuracy, total_gap};
 use super::models::{self, beginnings, candidate};
 use super::weighed::at_nominal;
+use crate::policy::{DECADES, OTHER_WEIGHTING, SCANNED, SIZES, SLOWER, STARTS, UNCHANGED};
 use nalgebra::DVector;
 use rayon::prelude::*;
 use std::collections::BTreeMap;

@@ -6,11 +6,11 @@
 
 use super::super::clock::Deadline;
 use super::super::estimate::{CandidateModel, FitTask, ModelFit, SignalWeights};
-use super::super::policy::{LEAST, OTHER_WEIGHTING, SETTLING, SURE};
 use super::super::problem::DiagnosisProblem;
 use super::compare::{SensorAccuracy, differences, evidence, gap, signal_gap, t_statistic};
 use super::folds::{LeftOutErrors, left_out};
 use super::models;
+use crate::policy::{LEAST, OTHER_WEIGHTING, SETTLING, SURE};
 
 /// A fitted model with its left-out errors.
 #[derive(Clone, Debug)]

@@ -12,7 +12,6 @@ use super::super::estimate::candidate::RecordingResiduals;
 use super::super::figures::{self, GapFigures};
 use super::super::hypotheses::{AttachmentSite, Hypothesis, SensorSignal};
 use super::super::mistakes;
-use super::super::policy::VISIBLE;
 use super::super::problem::{DiagnosisProblem, HypothesisValues, SignalDisplayUnit, ToleranceParameter, through};
 use super::super::select::choose::{AcceptedEffect, HypothesisTrial};
 use super::super::select::models;
@@ -23,6 +22,7 @@ use super::{
     PlaceEvidence, RecordingError, UnexplainedGap, Verdict, VerdictEffect,
 };
 use super::{alternative, ratio, spots};
+use crate::policy::VISIBLE;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 

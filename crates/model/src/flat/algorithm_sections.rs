@@ -125,7 +125,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// The equations that the section comes to, for all that it does not hold between the events of its `when`s.
-    pub(super) fn section_results(
+    fn section_results(
         &mut self,
         originals: &[AlgorithmTarget],
         results: &[ModelicaValue],
@@ -149,7 +149,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         }
     }
 
-    pub(super) fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[AlgorithmTarget], view: LookupContext) {
+    fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[AlgorithmTarget], view: LookupContext) {
         let origin = self.origin(when.span, view);
         let mut made = WhenClause { branches: Vec::new(), origin };
         for branch in when.branches {

@@ -4,13 +4,13 @@
 //! effect may only make up for it. So each of the others is fitted alone and with the best partner of its own, and the
 //! explanations are compared (`docs/gap_method.md`, "Which of several is taken").
 
-use super::super::super::policy::{ALPHA, FRONT};
 use super::super::super::problem::HypothesisValues;
 use super::super::choose::{AcceptedEffect, HypothesisTrial};
 use super::super::criteria::RejectionReason;
 use super::super::models;
 use super::super::weighed::{CrossValidatedFit, settled};
 use super::EffectSearch;
+use crate::policy::{ALPHA, FRONT};
 
 /// An explanation of the gap: a model with its accepted effects.
 #[derive(Clone)]
