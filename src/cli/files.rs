@@ -1,4 +1,9 @@
-//! Files written whole or not at all under their final name.
+//! Reads, writes and checks files for all subcommands.
+//!
+//! A file is written under a temporary name in the same folder and renamed when it is complete. A reader therefore
+//! never sees half a file, and a failed command leaves the old file untouched.
+//!
+//! The checks (`ending`, `ready`) run before long work, so that a wrong name is reported at once.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Seek, Write};
@@ -8,12 +13,14 @@ use super::CommandFailure;
 use bramah_syntax::diag::{Code, Diagnostic};
 use bramah_syntax::world::{DiskWorld, World, reason};
 
-/// A file that cannot be read or written.
+/// The failure for a file that cannot be opened, read or written. `verb` completes "cannot be ...".
 pub(super) fn access(path: &Path, verb: &str, error: &io::Error) -> CommandFailure {
     Diagnostic::new(Code::FileAccess, format!("`{}` cannot be {verb}: {}", path.display(), reason(error))).into()
 }
 
+/// The failure for a file that cannot be created. A missing folder gets a message of its own.
 fn unwritable(path: &Path, error: &io::Error) -> CommandFailure {
+    // The system's error names the file, which would hide that its folder is what is missing.
     if error.kind() == io::ErrorKind::NotFound {
         let text = format!("`{}` cannot be written: there is no such folder", path.display());
         return CommandFailure::new(Code::FileAccess, text);
@@ -21,21 +28,25 @@ fn unwritable(path: &Path, error: &io::Error) -> CommandFailure {
     access(path, "written", error)
 }
 
-/// A file being written under a temporary name beside its final one.
+/// A file that is being written under a temporary name next to its final one.
 ///
-/// Dropped before [`NewFile::finish`], it leaves nothing behind.
+/// When dropped before [`NewFile::finish`], it removes the temporary file, unless it is a lasting one.
 #[derive(Debug)]
 pub(super) struct NewFile {
+    /// The buffered writer. `None` once the file is closed.
     out: Option<BufWriter<File>>,
+    /// The name while writing; equal to `path` for devices and pipes.
     temporary: PathBuf,
+    /// The final name.
     path: PathBuf,
+    /// `path` is a device or pipe: it is written directly and never renamed or removed.
     direct: bool,
-    /// Stays under its temporary name when it is left unfinished.
+    /// The temporary file stays on the disk when the writing is not finished, so that a later run can continue it.
     lasting: bool,
 }
 
 impl NewFile {
-    /// Begins to write; fails at once where the folder is missing or not writable.
+    /// Opens the temporary file. `Err`: the path is a folder, or its folder is missing or not writable.
     pub fn create(path: &Path) -> Result<Self, CommandFailure> {
         if path.is_dir() {
             return Err(CommandFailure::new(
@@ -43,11 +54,12 @@ impl NewFile {
                 format!("`{}` cannot be written: it is a folder", path.display()),
             ));
         }
-        // Devices and pipes such as /dev/stdout or /dev/null cannot be renamed to.
+        // Devices and pipes such as /dev/stdout or /dev/null cannot be replaced by renaming.
         let direct = path.exists() && !path.is_file();
         let temporary = if direct { path.to_owned() } else { beside(path) };
         let file = File::create(&temporary).map_err(|e| unwritable(path, &e))?;
         Ok(NewFile {
+            // 64 KiB.
             out: Some(BufWriter::with_capacity(1 << 16, file)),
             temporary,
             path: path.to_owned(),
@@ -56,13 +68,17 @@ impl NewFile {
         })
     }
 
-    /// Begins to write, or goes on behind `written` bytes, under a name that lasts: `NAME.part`.
+    /// Opens `NAME.part`, which stays on the disk if the process is killed.
+    ///
+    /// `written`: continue after this many bytes. `None`: begin a new file. `Err`: the target is a device, or the part
+    /// cannot be opened or is too short.
     pub fn lasting(path: &Path, written: Option<u64>) -> Result<Self, CommandFailure> {
         if path.exists() && !path.is_file() {
             let text = format!("`{}` cannot be written in parts: it is no plain file", path.display());
             return Err(CommandFailure::new(Code::FileAccess, text));
         }
         let temporary = part(path);
+        // What follows the bytes of the checkpoint belongs to steps that the continued run repeats.
         let file = match written {
             None => File::create(&temporary).map_err(|e| unwritable(path, &e))?,
             Some(bytes) => cut(&temporary, bytes)?,
@@ -71,13 +87,14 @@ impl NewFile {
         Ok(NewFile { out, temporary, path: path.to_owned(), direct: false, lasting: true })
     }
 
-    /// Waits until the disk has everything that was handed to the system.
+    /// Waits until the disk has all data that was handed to the system.
     pub fn sync(&self) -> Result<(), CommandFailure> {
+        // Data in the buffer of `out` is not included. The recorder writes through its own handle and flushes it first.
         let synced = self.out.as_ref().map_or(Ok(()), |out| out.get_ref().sync_data());
         synced.map_err(|e| access(&self.temporary, "written", &e))
     }
 
-    /// Everything is written: the file gets its name.
+    /// Flushes the file and renames it to its final name, which replaces an older file.
     pub fn finish(mut self) -> Result<(), CommandFailure> {
         let failed = |e: io::Error| access(&self.path, "written", &e);
         if let Some(mut out) = self.out.take() {
@@ -89,13 +106,13 @@ impl NewFile {
         Ok(())
     }
 
-    /// A second handle for a writer that wants to own one; nothing may be written to both.
+    /// A second handle on the same open file, for a writer that must own one. Only one of the two may be written to.
     pub fn handle(&self) -> io::Result<BufWriter<File>> {
         let file = self.out.as_ref().map(|out| out.get_ref().try_clone());
         file.unwrap_or_else(|| Err(io::ErrorKind::BrokenPipe.into())).map(|f| BufWriter::with_capacity(1 << 16, f))
     }
 
-    /// Leaves what has been written as `NAME.part`, for someone who wants to rescue it.
+    /// Renames the unfinished file to `NAME.part` and returns that path. `None` for devices, or when renaming fails.
     pub fn keep_part(mut self) -> Option<PathBuf> {
         drop(self.out.take());
         let kept = part(&self.path);
@@ -115,15 +132,18 @@ impl Write for NewFile {
 
 impl Drop for NewFile {
     fn drop(&mut self) {
+        // The file is closed before it is removed, which some systems demand.
         drop(self.out.take());
         if !self.direct && !self.lasting {
-            // After `finish` there is nothing to remove.
+            // After `finish` the temporary name no longer exists, and this fails without consequence.
             let _ = std::fs::remove_file(&self.temporary);
         }
     }
 }
 
-/// Opens a file behind its first bytes; what follows them is lost.
+/// Opens a file for writing after its first `bytes` bytes and removes the rest.
+///
+/// `Err`: the file cannot be opened, or it is shorter.
 fn cut(path: &Path, bytes: u64) -> Result<File, CommandFailure> {
     let failed = |e: io::Error| access(path, "written", &e);
     let mut file = File::options().write(true).open(path).map_err(|e| access(path, "continued", &e))?;
@@ -137,28 +157,31 @@ fn cut(path: &Path, bytes: u64) -> Result<File, CommandFailure> {
     Ok(file)
 }
 
-/// `out.csv` grows as `out.csv.part` until it is whole.
+/// The lasting temporary name: `out.csv` becomes `out.csv.part`.
 fn part(path: &Path) -> PathBuf {
     let mut name = path.to_owned().into_os_string();
     name.push(".part");
     PathBuf::from(name)
 }
 
-/// `out.csv` becomes `.out.csv.1234.part`, in the same folder so that renaming is one step.
+/// The hidden temporary name: `out.csv` becomes `.out.csv.PID.part`. It lies in the same folder, so that renaming is
+/// atomic; the process id keeps concurrent commands apart.
 fn beside(path: &Path) -> PathBuf {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     path.with_file_name(format!(".{name}.{}.part", std::process::id()))
 }
 
-/// Writes a whole file.
+/// Writes a complete file, replacing an older one.
 pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), CommandFailure> {
     let mut file = NewFile::create(path)?;
     file.write_all(bytes).map_err(|e| access(path, "written", &e))?;
     file.finish()
 }
 
-/// What a file's name asks for: its ending in lower case, which must be one of those that `what` can be written as. The
-/// first of them for stdout (`-`), devices, pipes and names without an ending.
+/// The format that the ending of a file's name asks for, in lower case.
+///
+/// Returns the first of `known` for stdout (`-`), devices, pipes and names without ending. `Err`: the ending is not one
+/// of `known`; the message says how `what` can be written.
 pub(super) fn ending(path: &Path, what: &str, known: &[&'static str]) -> Result<&'static str, CommandFailure> {
     let device = path.exists() && !path.is_file() && !path.is_dir();
     let Some(asked) = path.extension().filter(|_| !device) else { return Ok(known[0]) };
@@ -172,21 +195,25 @@ pub(super) fn ending(path: &Path, what: &str, known: &[&'static str]) -> Result<
     })
 }
 
-/// Says before the work what would be found out only after it: a folder that is missing or cannot be written to. A `-`
-/// is stdout, and a pipe is opened once only, for whoever reads takes its closing for the end.
+/// Checks before long work that a file can be created in its folder; a temporary file is created and removed.
+///
+/// `-` is stdout and always passes. A pipe is not opened, because its reader would take the closing for the end of the
+/// data.
 pub(super) fn ready(path: &Path) -> Result<(), CommandFailure> {
     let pipe = path.exists() && !path.is_file() && !path.is_dir();
     if path == Path::new("-") || pipe { Ok(()) } else { NewFile::create(path).map(drop) }
 }
 
-/// Says before the work that a file cannot be written, by its name or its place: [`ending`] and [`ready`].
+/// Checks before long work both the name of an output ([`ending`]) and its place ([`ready`]).
 pub(super) fn ready_as(path: &Path, what: &str, known: &[&'static str]) -> Result<(), CommandFailure> {
     ending(path, what, known)?;
     ready(path)
 }
 
-/// All Modelica files below a folder, in the order of their names; folders whose name begins with a dot, links and those
-/// that `skipped` names are left out.
+/// All Modelica files below a folder, in the order of their names.
+///
+/// Left out are folders whose name begins with a dot, folders that `skipped` accepts, and symbolic links to folders,
+/// which could form a cycle.
 pub(super) fn modelica_below(folder: &Path, skipped: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
     let mut found = Vec::new();
     for (name, is_folder) in DiskWorld.list(folder).unwrap_or_default() {
@@ -200,7 +227,7 @@ pub(super) fn modelica_below(folder: &Path, skipped: &dyn Fn(&str) -> bool) -> V
     found
 }
 
-/// Writes to stdout. A reader that has gone away (`| head`) is no mistake.
+/// Prints to stdout. A closed pipe (`| head`) is not an error.
 pub(super) fn print(text: &str) -> Result<(), CommandFailure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

@@ -1,4 +1,7 @@
-//! What is said to the user on stderr, in the format asked for.
+//! Prints messages to stderr in the format that `--message-format` asks for.
+//!
+//! Diagnostics of all stages enter; text or JSON lines leave. Every subcommand gets the one [`MessageReporter`] that
+//! `main` makes. The reporter also holds the source texts into which the labels of diagnostics point.
 
 use std::io::{IsTerminal, Write};
 
@@ -18,19 +21,23 @@ pub(super) enum MessageFormat {
     Json,
 }
 
-/// The texts read so far, and the way to talk about them.
+/// Prints diagnostics and remarks, and holds the texts that they refer to.
 #[derive(Debug)]
 pub(super) struct MessageReporter {
-    /// Texts that diagnostics point into.
+    /// The texts that diagnostics point into.
     pub sources: Sources,
+    /// The format of diagnostics.
     format: DiagnosticFormat,
+    /// Use terminal colours.
     colour: bool,
+    /// Columns of the terminal; 100 when stderr is not a terminal.
     width: usize,
+    /// Print nothing at all.
     silent: bool,
 }
 
 impl MessageReporter {
-    /// Colour on a terminal only, and not with `NO_COLOR`.
+    /// A reporter for stderr. It uses colours only on a terminal, and not when the variable `NO_COLOR` has a value.
     pub fn new(format: MessageFormat) -> Self {
         let format = match format {
             MessageFormat::Human => DiagnosticFormat::Human,
@@ -43,15 +50,15 @@ impl MessageReporter {
         MessageReporter { sources: Sources::default(), format, colour: terminal && !plain, width, silent: false }
     }
 
-    /// Says nothing: for a stage that is run a second time.
+    /// A reporter that prints nothing, for a stage whose messages are printed by another run of it.
     pub fn silent() -> Self {
         MessageReporter { silent: true, ..MessageReporter::new(MessageFormat::Human) }
     }
 
-    /// Does something of which only what stops it is said: a stage that is run a second time.
+    /// Runs `act` without printing its messages, because the same stage runs again later and prints them.
     ///
     /// # Errors
-    /// Those of `act`, whose texts are then known here.
+    /// The failure of `act`. The reporter then takes over the texts that the failure points into.
     pub fn quietly<T>(
         &mut self,
         act: impl FnOnce(&mut MessageReporter) -> Result<T, CommandFailure>,
@@ -64,17 +71,18 @@ impl MessageReporter {
         result
     }
 
-    /// Writes diagnostics, errors last so that they stand where the eye is.
+    /// Prints diagnostics. Errors come last, next to the prompt.
     pub fn say(&self, diagnostics: &[Diagnostic]) {
         let mut ordered: Vec<Diagnostic> = diagnostics.to_vec();
+        // The sort is stable: within errors and within the rest the order of the stages stays.
         ordered.sort_by_key(|d| d.severity == Severity::Error);
         self.write(&render(&self.sources, &ordered, self.format, self.width, self.colour));
     }
 
-    /// The value of a stage, whose remarks and warnings are said.
+    /// The value of a stage; its remarks and warnings are printed.
     ///
     /// # Errors
-    /// Its diagnostics, when there are errors among them or no value.
+    /// All diagnostics, when there is an error among them or no value. They are not printed here.
     pub fn value<T>(&self, checked: StageResult<T>) -> Result<T, CommandFailure> {
         let failed = checked.diagnostics.iter().any(Diagnostic::is_error);
         match checked.value {
@@ -86,18 +94,19 @@ impl MessageReporter {
         }
     }
 
-    /// A remark for people; scripts that asked for JSON or short messages are not bothered.
+    /// Prints a remark for people. JSON and short formats leave it out, because scripts read them.
     pub fn remark(&self, text: &str) {
         if self.format == DiagnosticFormat::Human {
             self.write(&format!("{text}\n"));
         }
     }
 
+    /// Writes to stderr, unless this reporter is silent.
     fn write(&self, text: &str) {
         if self.silent {
             return;
         }
-        // Nobody is left to be told when stderr is closed.
+        // A closed stderr leaves no way to report the failure.
         let _ = std::io::stderr().lock().write_all(text.as_bytes());
     }
 }

@@ -1,6 +1,13 @@
-//! The command line: a thin skin around the library, and the only place that touches files, clock and terminal.
+//! The `bramah` command: the only layer of the program that uses the disk, the clock, the environment and the terminal.
 //!
-//! stdout is data, stderr is messages and progress. One file a verb.
+//! Command-line arguments enter; files, text on stdout and an exit code leave. `src/main.rs` calls [`main`]. Each
+//! subcommand has one module with an `Args` struct for clap and a function `run`. The work itself is done by the
+//! library crates below.
+//!
+//! stdout carries data only, so that it can be piped. Messages and progress go to stderr.
+//!
+//! Exit codes: 0 success; 1 the model is wrong, a run stopped early or a comparison failed; 2 bad arguments or files;
+//! 101 a panic; 130 a second Ctrl-C.
 
 #![allow(rustdoc::broken_intra_doc_links, reason = "help texts show brackets as a user types them")]
 #![allow(clippy::disallowed_methods, clippy::print_stderr, reason = "the one place that may")]
@@ -50,6 +57,7 @@ use messages::{MessageFormat, MessageReporter};
 /// Acausal simulator for electro-hydraulic machines: circuits in a strict subset of Modelica, solved by SUNDIALS IDA.
 #[derive(Parser, Debug)]
 #[command(name = "bramah", version, max_term_width = 100, after_help = EXAMPLES)]
+// The comments on this type and its fields are the help texts that clap prints.
 struct Cli {
     /// How messages are written to stderr
     #[arg(long, global = true, value_enum, default_value_t, value_name = "FORMAT")]
@@ -58,6 +66,7 @@ struct Cli {
     command: CliCommand,
 }
 
+/// Text below the options in the output of `bramah --help`.
 const EXAMPLES: &str = "\
 Examples:
   bramah new press                              a circuit and an experiment to start from
@@ -92,30 +101,39 @@ enum CliCommand {
     Completions(completions::CompletionsArgs),
 }
 
+/// The outcome of a subcommand that did its work and printed its own messages.
+///
 /// How a command ended when nothing went wrong with the command itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CommandStatus {
-    /// All is well.
+    /// Exit code 0.
     Fine,
-    /// The model is wrong, the run stopped early, or a comparison found a violation.
+    /// Exit code 1: the model is wrong, the run stopped early, or a comparison found a violation.
     Wrong,
 }
 
-/// Why a command could not do its work.
+/// The error of a subcommand that could not do its work.
+///
+/// `main` prints the diagnostics and turns the first error among them into the exit code.
 #[derive(Debug)]
 struct CommandFailure {
+    /// The messages to print. Labels refer to the texts in `MessageReporter::sources`.
     diagnostics: Vec<Diagnostic>,
 }
 
 impl CommandFailure {
-    /// One diagnostic without place.
+    /// A failure with one diagnostic that has no place in a text.
     fn new(code: Code, message: impl Into<String>) -> Self {
         Diagnostic::new(code, message).into()
     }
 
-    /// Wrong data, arguments and files give 2, wrong models 1. A wrong name in `--set` is a wrong argument.
+    /// The exit code of this failure: 2 for wrong data, arguments and files, 1 for a wrong model.
+    ///
+    /// An error inside a value of `--set` also gives 2, because the user typed it on the command line.
     fn exit_code(&self, sources: &Sources) -> u8 {
+        // Values of `--set` are parsed as a source with this reserved path, so a label in it marks a wrong argument.
         let given = |d: &Diagnostic| d.labels.first().is_some_and(|l| sources.get(l.span.file).path == GIVEN);
+        // Warnings may stand before the error that stopped the command; they do not decide the exit code.
         let first = self.diagnostics.iter().find(|d| d.is_error());
         first.map_or(2, |d| if given(d) { 2 } else { exit_code(d.code) })
     }
@@ -127,19 +145,23 @@ impl From<Diagnostic> for CommandFailure {
     }
 }
 
-/// The exit status that a diagnostic leads to.
+/// The exit code that an error of this code leads to.
 fn exit_code(code: Code) -> u8 {
+    // Both codes belong to the model's number range, but the cause is a name or value on the command line.
     let outside = matches!(code, Code::BadModel | Code::BadSet);
+    // E6xx codes are about data files, experiments and studies, E9xx codes about arguments and files.
     if outside || code.id()[1..].starts_with(['6', '9']) { 2 } else { 1 }
 }
 
-/// Runs the command with the arguments of this process.
+/// Runs the command with the arguments of this process and returns its exit code.
 pub fn main() -> ExitCode {
+    // The hook comes first, so that a panic while arguments are parsed is also reported as a bug.
     std::panic::set_hook(Box::new(report_panic));
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => {
-            // Help and version go to stdout; a reader that has gone away does not matter.
+            // Help and version also arrive here as an error, and `print` sends them to stdout. A failed write (closed
+            // pipe) is not reported.
             let _ = error.print();
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
@@ -148,6 +170,7 @@ pub fn main() -> ExitCode {
     match dispatch(cli.command, &mut messages) {
         Ok(CommandStatus::Fine) => ExitCode::SUCCESS,
         Ok(CommandStatus::Wrong) => ExitCode::from(1),
+        // Only failures are printed here. A subcommand prints the messages of a wrong model itself.
         Err(failure) => {
             messages.say(&failure.diagnostics);
             ExitCode::from(failure.exit_code(&messages.sources))
@@ -155,6 +178,7 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// Calls the `run` function of the chosen subcommand.
 fn dispatch(command: CliCommand, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     match command {
         CliCommand::New(args) => new::run(&args, messages),
@@ -171,6 +195,8 @@ fn dispatch(command: CliCommand, messages: &mut MessageReporter) -> Result<Comma
         CliCommand::Sensitivity(args) => sensitivity::run(&args, messages),
         CliCommand::Export(args) => export::run(&args, messages),
         CliCommand::Fmt(args) => fmt::run(&args, messages),
+        // `lsp` and `serve` talk to an editor or a browser, `explain` and `completions` only print. None needs the
+        // reporter.
         CliCommand::Lsp(args) => lsp::run(&args),
         CliCommand::Serve(args) => serve::run(&args),
         CliCommand::Explain(args) => explain::run(&args),
@@ -178,8 +204,10 @@ fn dispatch(command: CliCommand, messages: &mut MessageReporter) -> Result<Comma
     }
 }
 
+/// The panic hook: prints a request to report the bug instead of Rust's default text.
 fn report_panic(info: &std::panic::PanicHookInfo<'_>) {
     let payload = info.payload();
+    // `panic!` with a literal carries `&str`, with format arguments `String`.
     let text = payload.downcast_ref::<&str>().copied().or(payload.downcast_ref::<String>().map(String::as_str));
     let place = info.location().map(|l| format!(" ({}:{})", l.file(), l.line())).unwrap_or_default();
     eprintln!(

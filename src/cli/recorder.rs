@@ -1,4 +1,9 @@
-//! Rows of a run on their way into files.
+//! Writes the rows of a run into a result file or to stdout.
+//!
+//! Rows enter one at a time from `simulate`. They are buffered in memory and leave in large blocks through the writer
+//! of the file's format. The file gets its final name when the run is over.
+//!
+//! Small writers for texts and tables that other subcommands use stand at the end.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -11,31 +16,37 @@ use bramah_results::formats::{self, FORMATS, ResultFormat, ResultWriter};
 use bramah_results::{CsvUnits, CsvWriter, Signal, Trajectory};
 use bramah_syntax::diag::{Code, Diagnostic};
 
-/// Rows wait in memory until they take this much, so that writing hardly disturbs the run; in Parquet a group of rows.
+/// Bytes of rows that are buffered before they are written (32 MiB). Large blocks keep the run undisturbed; in Parquet
+/// one block is a row group.
 const BUFFER_BYTES: usize = 32 << 20;
-/// Results larger than this are announced before the run.
+/// Results larger than this many bytes are announced before the run.
 const LARGE: u64 = 1_000_000_000;
 
-/// Where a result goes.
+/// Where a result goes, and in which format.
 #[derive(Clone)]
 pub(super) struct ResultTarget {
-    /// The file; `None` for stdout.
+    /// The file. `None` for stdout.
     path: Option<PathBuf>,
+    /// The format, found by the ending of the file's name.
     format: &'static ResultFormat,
 }
 
 impl ResultTarget {
     /// CSV on stdout.
     pub fn stdout() -> Self {
+        // The first entry of the table of formats is CSV.
         ResultTarget { path: None, format: &FORMATS[0] }
     }
 
-    /// The format follows from the file's name.
+    /// The target with this name; `-` is stdout. The ending of the name decides the format.
+    ///
+    /// `Err`: the ending belongs to a picture or to no known format.
     pub fn new(name: &str) -> Result<ResultTarget, CommandFailure> {
         let path = PathBuf::from(name);
         if name == "-" {
             return Ok(ResultTarget::stdout());
         }
+        // A common mistake, which deserves a better help text than the list of formats.
         if path.extension().is_some_and(|e| ["html", "svg", "png"].iter().any(|p| e.eq_ignore_ascii_case(p))) {
             return Err(Diagnostic::new(Code::BadArgument, format!("`{name}` is no result file"))
                 .help("a picture is written by `--plot`, or by `bramah plot` afterwards")
@@ -46,37 +57,46 @@ impl ResultTarget {
         Ok(ResultTarget { path: Some(path), format })
     }
 
-    /// What the format of the file is like.
+    /// The entry of the format table.
     pub fn format(&self) -> &'static ResultFormat {
         self.format
     }
 
-    /// The name for messages.
+    /// The name as it appears in messages.
     pub fn name(&self) -> String {
         self.path.as_ref().map_or_else(|| "stdout".to_owned(), |path| path.display().to_string())
     }
 }
 
-/// Takes the rows of a run.
+/// Takes the rows of one run and writes them.
 pub(super) struct ResultRecorder {
+    /// Where the rows go.
     target: ResultTarget,
-    /// Writes to the file or to stdout; gone after a failure.
+    /// Encodes rows into the format of the file. `None` after a failure.
     writer: Option<Box<dyn ResultWriter>>,
+    /// The file under its temporary name. `None` for stdout.
     file: Option<NewFile>,
-    /// Rows for the writer, each with its time first, one after the other: with many columns a row at a time is
-    /// several times faster than a column at a time.
+    /// Buffered rows, row after row; each row is its time followed by its values. One row at a time is several times
+    /// faster than one column at a time when there are many columns.
     waiting: Vec<f64>,
-    /// All rows, where they are wanted after the run.
+    /// The signals; and all rows when `keep` is set.
     rows: Trajectory,
+    /// Keep all rows in memory for use after the run.
     keep: bool,
+    /// The first error of writing, reported by `finish`.
     failure: Option<CommandFailure>,
+    /// Rows taken so far, those before a checkpoint included.
     count: usize,
+    /// The reader of stdout has closed the pipe.
     unread: bool,
+    /// Time spent on writing.
     writing: Duration,
 }
 
 impl ResultRecorder {
-    /// Opens the file at once, so that a run is not lost to a wrong name. `keep`: all rows are wanted after the run.
+    /// Opens the target before the run, so that a wrong name is reported at once.
+    ///
+    /// `keep`: all rows are needed after the run.
     pub fn new(
         target: ResultTarget,
         signals: Vec<Signal>,
@@ -87,13 +107,17 @@ impl ResultRecorder {
         Ok(Self::on(target, file, (signals, units), keep, None))
     }
 
-    /// Rows into a file that survives a run that is killed; behind those of a checkpoint, if there is one.
+    /// Opens a CSV file that survives when the process is killed.
+    ///
+    /// `written` is the position of a checkpoint; the file is cut there and continued. `None` begins a new file. `Err`:
+    /// the format cannot grow, or the file cannot be opened or is shorter than the checkpoint says.
     pub fn lasting(
         target: ResultTarget,
         signals: Vec<Signal>,
         units: CsvUnits,
         written: Option<&ResultPosition>,
     ) -> Result<Self, CommandFailure> {
+        // Only formats whose files grow row by row can be continued.
         let Some(path) = target.path.as_deref().filter(|_| target.format.grows) else {
             let text = format!("a run with checkpoints writes a CSV file, and the result is `{}`", target.name());
             return Err(Diagnostic::new(Code::BadArgument, text)
@@ -104,6 +128,7 @@ impl ResultRecorder {
         Ok(Self::on(target, Some(file), (signals, units), false, written))
     }
 
+    /// The recorder of an opened file. A failure to write the header is kept and reported by `finish`.
     fn on(
         target: ResultTarget,
         file: Option<NewFile>,
@@ -119,6 +144,7 @@ impl ResultRecorder {
             rows: Trajectory::new(signals),
             keep,
             failure: None,
+            // Rows of an earlier start count too, since the summary and later checkpoints refer to the entire file.
             count: written.map_or(0, |w| w.rows),
             unread: false,
             writing: Duration::ZERO,
@@ -130,10 +156,10 @@ impl ResultRecorder {
         recorder
     }
 
-    /// Begins the file, or goes on behind the bytes that it has.
+    /// The writer of the format. It writes the header, or continues after `written` bytes.
     fn open(&self, units: CsvUnits, written: Option<u64>) -> std::io::Result<Box<dyn ResultWriter>> {
         let out: Box<dyn Write + Send> = match &self.file {
-            // rows of CSV come in large pieces already
+            // CSV rows arrive in large blocks, so a second buffer would only copy them.
             Some(file) if self.target.format.grows => Box::new(file.handle()?),
             Some(file) => Box::new(std::io::BufWriter::new(file.handle()?)),
             None => Box::new(std::io::BufWriter::new(std::io::stdout())),
@@ -144,7 +170,9 @@ impl ResultRecorder {
         }
     }
 
+    /// Notes a failure and drops the writer; further rows are ignored.
     fn fail(&mut self, error: &std::io::Error) {
+        // A closed pipe is normal (`| head`); it ends the run without an error.
         if error.kind() == std::io::ErrorKind::BrokenPipe {
             self.unread = true;
         } else {
@@ -153,7 +181,7 @@ impl ResultRecorder {
         self.writer = None;
     }
 
-    /// Takes a row; false when it makes no sense to go on because nothing can be written any more.
+    /// Takes a row. Returns false when writing has failed, so that the run can stop.
     pub fn row(&mut self, time: f64, values: &[f64]) -> bool {
         self.count += 1;
         if self.keep {
@@ -163,23 +191,24 @@ impl ResultRecorder {
             self.waiting.push(time);
             self.waiting.extend_from_slice(values);
         }
+        // 8 bytes a value.
         if 8 * self.waiting.len() > BUFFER_BYTES {
             self.flush();
         }
         self.failure.is_none() && !self.unread
     }
 
-    /// True when the reader of stdout has gone away (`| head`): nothing is left to do, and nothing is wrong.
+    /// Whether the reader of stdout has closed the pipe. The command then ends without an error.
     pub fn is_unread(&self) -> bool {
         self.unread
     }
 
-    /// How long writing has taken.
+    /// Time spent on writing so far.
     pub fn writing(&self) -> Duration {
         self.writing
     }
 
-    /// Writes what waits.
+    /// Writes the buffered rows and measures the time that it takes.
     fn flush(&mut self) {
         let clock = Instant::now();
         if let Some(writer) = &mut self.writer
@@ -191,7 +220,7 @@ impl ResultRecorder {
         self.writing += clock.elapsed();
     }
 
-    /// Puts all rows on the disk and says how far they reach; `None` after a failure.
+    /// Writes all rows to the disk and returns the position that a checkpoint stores. `None` after a failure.
     pub fn mark(&mut self) -> Option<ResultPosition> {
         self.flush();
         let bytes = match self.writer.as_mut().map(|writer| writer.flush()) {
@@ -202,6 +231,7 @@ impl ResultRecorder {
             }
             None => return None,
         };
+        // The data must be on the disk, not only in the system's cache, before a checkpoint refers to it.
         if let Some(Err(failure)) = self.file.as_ref().map(NewFile::sync) {
             self.failure = Some(failure);
             return None;
@@ -209,22 +239,27 @@ impl ResultRecorder {
         Some(ResultPosition { file: self.target.name(), bytes, rows: self.count })
     }
 
-    /// Notes why no checkpoint could be written.
+    /// Notes a failure from outside, such as a checkpoint that could not be written.
     pub fn failed(&mut self, failure: CommandFailure) {
         self.failure = Some(failure);
     }
 
-    /// Ends without giving the file its name: what it holds up to the last mark is for another run.
+    /// Ends without renaming the file. Rows up to the last mark are used when the run is continued.
+    ///
+    /// `Err` is the failure noted during the run, if there was one.
     pub fn suspend(mut self) -> Result<(), CommandFailure> {
         self.failure.take().map_or(Ok(()), Err)
     }
 
-    /// How many rows have come.
+    /// Number of rows taken so far.
     pub fn rows(&self) -> usize {
         self.count
     }
 
-    /// Writes the rest and gives the file its name; hands out the rows where they were to be kept.
+    /// Writes the remaining rows and renames the file to its final name.
+    ///
+    /// Returns the trajectory, which has rows only when `keep` was set. `Err`: something could not be written; what was
+    /// written stays in `NAME.part`.
     pub fn finish(mut self) -> Result<Trajectory, CommandFailure> {
         self.flush();
         if let Some(writer) = self.writer.take()
@@ -232,6 +267,7 @@ impl ResultRecorder {
         {
             self.fail(&error);
         }
+        // A file is renamed only when everything was written; otherwise a broken file would look complete.
         match (self.failure.take(), self.file.take()) {
             (None, Some(file)) => file.finish()?,
             (Some(failure), file) => return Err(kept(failure, file)),
@@ -241,7 +277,7 @@ impl ResultRecorder {
     }
 }
 
-/// The part of a result that could be written is kept under another name.
+/// Keeps the written part of a result under `NAME.part` and adds its name to the failure.
 fn kept(mut failure: CommandFailure, file: Option<NewFile>) -> CommandFailure {
     if let (Some(path), Some(first)) = (file.and_then(NewFile::keep_part), failure.diagnostics.first_mut()) {
         first.notes.push(format!("what could be written is in `{}`", path.display()));
@@ -249,7 +285,9 @@ fn kept(mut failure: CommandFailure, file: Option<NewFile>) -> CommandFailure {
     failure
 }
 
-/// A note about a result that will be large.
+/// A note that the result will take more than 1 GB; `None` for smaller ones.
+///
+/// `intervals` is the number of output intervals of the run. Rows at events are not counted.
 pub(super) fn announcement(signals: &[Signal], intervals: f64, target: &ResultTarget) -> Option<Diagnostic> {
     let row = (target.format.bytes_per_row)(signals);
     let bytes = row as f64 * (intervals + 1.0);
@@ -261,12 +299,12 @@ pub(super) fn announcement(signals: &[Signal], intervals: f64, target: &ResultTa
     })
 }
 
-/// Writes a text to a file, or to stdout for `-`.
+/// Writes a text to a file, or to stdout when the name is `-`.
 pub(super) fn write_text(name: &str, text: &str) -> Result<(), CommandFailure> {
     if name == "-" { print(text) } else { super::files::write(Path::new(name), text.as_bytes()) }
 }
 
-/// Writes a table of operating points, a row each, numbered in the first column; `-` is stdout.
+/// Writes a CSV table of operating points, one point a row; `-` is stdout. The first column numbers the points from 0.
 pub(super) fn write_points(
     path: &Path,
     signals: &[Signal],
@@ -279,6 +317,7 @@ pub(super) fn write_points(
         writer.row(i as f64, row).map_err(io)?;
     }
     writer.finish().map_err(io)?;
+    // The CSV writer names its first column `time`; here it holds the number of the point.
     let text = String::from_utf8_lossy(&out).replacen("time", "point", 1);
     write_text(&path.display().to_string(), &text)
 }

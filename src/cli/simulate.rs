@@ -1,4 +1,10 @@
-//! `bramah simulate`
+//! `bramah simulate`: compiles a model, runs it once and writes its rows into a result file.
+//!
+//! An `ExperimentSpecification` made from the flags and the experiment file enters. A result file, an optional picture,
+//! an optional statistics file and optional checkpoints leave.
+//!
+//! The solver pushes rows into a [`RecorderSink`], which hands them to a `ResultRecorder`. The sink also stores
+//! checkpoints and stops the run when writing fails.
 
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -52,20 +58,26 @@ pub(super) struct SimulateArgs {
     checkpoint_every: Option<f64>,
 }
 
+/// Runs the subcommand and writes the statistics file, also after a failure or a panic.
+///
+/// `Err` means that the arguments, files or the model cannot be used, or that the result could not be written.
 pub(super) fn run(args: &SimulateArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let experiment = args.model.experiment(Some(&args.run), messages)?;
     let mut record = StatisticsRecord::default();
+    // The record is filled while the run goes on, so it has useful content even when `execute` panics.
     let work = AssertUnwindSafe(|| execute(args, &experiment, &mut record, messages));
+    // A panic is caught to write the statistics first. It continues below and reaches the hook in `main`.
     let outcome = catch_unwind(work);
     record.peak_memory_bytes = peak_memory();
     let written = match &experiment.statistics {
         Some(path) => write_text(path, &record.to_json()),
         None => Ok(()),
     };
-    // What went wrong with the run matters more than what went wrong with its statistics.
+    // An error of the run takes precedence over an error of its statistics file.
     outcome.unwrap_or_else(|bug| resume_unwind(bug)).and_then(|ending| written.map(|()| ending))
 }
 
+/// Compiles, runs and writes the result; fills `record` on the way.
 fn execute(
     args: &SimulateArgs,
     experiment: &ExperimentSpecification,
@@ -74,12 +86,16 @@ fn execute(
 ) -> Result<CommandStatus, CommandFailure> {
     let begun = Instant::now();
     let compiled = model::compile(experiment, messages);
+    // The time is noted before `?`, so that the statistics of a model that fails to compile have it too.
     record.compile_s = Some(begun.elapsed().as_secs_f64());
     let model = compiled?;
     let dae = &model.dae;
+    // The sources enter the fingerprint of the checkpoint. A copy is needed because `prepare` adds the recording to
+    // them; the recording has its own part of the fingerprint.
     let sources = if args.checkpoint.is_some() { messages.sources.clone() } else { Sources::default() };
     let recorded = prepare(experiment, dae, messages)?;
     let mut settings = settings(experiment, &dae.experiment, &recorded)?;
+    // A recording longer than the run is not an error, but the user may have forgotten `--stop-time`.
     if let Some(covered) = recorded.covered.filter(|c| experiment.stop_time.is_none() && c.stop > settings.stop_time) {
         messages.remark(&format!(
             "the run ends at {} s as the model says; the recording goes on to {} s (`--stop-time`)",
@@ -88,12 +104,14 @@ fn execute(
         ));
     }
     let target = ResultTarget::new(&output_name(experiment, &dae.class))?;
+    // Only the chosen columns are computed at each row, so the choice must precede the run.
     settings.wanted = columns::choose(dae, &experiment.variables, &target)?;
     let signals = signals(dae, &settings.wanted);
     let intervals = (settings.stop_time - settings.start_time) / settings.interval;
     if let Some(note) = announcement(&signals, intervals.max(1.0), &target) {
         messages.say(&[note]);
     }
+    // The fingerprint includes the settings, so `checkpoint_every` must have its value before it is taken.
     let kept = match &args.checkpoint {
         Some(path) => {
             settings.checkpoint_every = args.checkpoint_every.unwrap_or_else(|| usual_distance(&settings));
@@ -112,6 +130,7 @@ fn execute(
     }
     let (run, rows) = solve(&model, &settings, &recorded, from.as_ref(), rows);
     fill(record, &run);
+    // A suspended run keeps its `.part` file and checkpoint; the same command continues from them.
     let recorder = match rows.close(&run) {
         RecorderEnding::Over(recorder) => *recorder,
         RecorderEnding::Suspended(left, name) => {
@@ -119,9 +138,12 @@ fn execute(
             return Ok(suspended(&run, &name, messages));
         }
     };
+    // The reader of stdout has closed the pipe (`| head`). This is not an error.
     if recorder.is_unread() {
         return Ok(CommandStatus::Fine);
     }
+    // `finish` consumes the recorder, so the number of rows is read first. The report comes before `outcome?` because
+    // the messages of the run explain a result that could not be written.
     let rows = recorder.rows();
     let outcome = recorder.finish();
     report(&run, rows, &target, messages);
@@ -132,7 +154,10 @@ fn execute(
     Ok(if run.end.is_success() { CommandStatus::Fine } else { CommandStatus::Wrong })
 }
 
-/// What the flags, the experiment file, the annotation and the recording say, in this order.
+/// The settings of the run.
+///
+/// A value comes from the first of these that has it: the flags or the experiment file, the model's `experiment`
+/// annotation, the span of the recording. `Err`: the run would end before its start, or goes beyond its recording.
 fn settings(
     experiment: &ExperimentSpecification,
     annotation: &flat::ExperimentAnnotation,
@@ -146,6 +171,7 @@ fn settings(
         tolerance: experiment.relative_tolerance.or(annotation.tolerance),
     };
     let mut settings = Settings::from_experiment(&said);
+    // `--event-rows 0` (or `none`) switches event rows off; otherwise the number limits them.
     if let Some(most) = experiment.event_rows {
         (settings.event_rows, settings.most_event_rows) = (most > 0, most);
     }
@@ -163,27 +189,33 @@ fn settings(
     Ok(settings)
 }
 
+/// The name of the result file: the one asked for, else `CLASS.csv`.
 fn output_name(experiment: &ExperimentSpecification, class: &str) -> String {
     experiment.output_file.clone().unwrap_or_else(|| format!("{class}.csv"))
 }
 
-/// Takes rows and says when it makes no sense to go on.
+/// Receives the rows and checkpoints of a run; stops the run when they cannot be written.
 struct RecorderSink {
+    /// Buffers the rows and writes them to the result file.
     recorder: ResultRecorder,
-    /// With checkpoints: where they are kept, and whether there is one.
+    /// The checkpoint file, and whether it holds a checkpoint. `None` for a run without `--checkpoint`.
     kept: Option<(CheckpointFile, bool)>,
 }
 
-/// What became of the rows of a run.
+/// What became of the rows when the solver returned.
 enum RecorderEnding {
-    /// The run is over.
+    /// The run is over. The recorder still has to be finished.
     Over(Box<ResultRecorder>),
-    /// It was interrupted and can go on from the file of this name.
+    /// The run was interrupted and has a checkpoint to continue from. Holds whether the rows could be written, and the
+    /// name of the checkpoint file.
     Suspended(Result<(), CommandFailure>, String),
 }
 
 impl RecorderSink {
-    /// The rows of a run, and the checkpoint it goes on from.
+    /// Opens the result file. Returns the sink, and the checkpoint from which the run continues, if there is one.
+    ///
+    /// `plot`: keep all rows in memory for a picture. `Err`: the file cannot be opened, the checkpoint belongs to
+    /// another run, or a picture is asked for together with checkpoints.
     fn open(
         kept: Option<CheckpointFile>,
         target: &ResultTarget,
@@ -194,24 +226,30 @@ impl RecorderSink {
             let recorder = ResultRecorder::new(target.clone(), signals, units, plot)?;
             return Ok((RecorderSink { recorder, kept: None }, None));
         };
+        // A continued run has only the rows after the checkpoint in memory, so the picture would be incomplete.
         if plot {
             let diagnostic = Diagnostic::new(Code::BadArgument, "a run with checkpoints cannot be drawn at once");
             return Err(diagnostic.help("draw its result with `bramah plot` afterwards").into());
         }
+        // The checkpoint says how many bytes of the result file are valid; the file is cut there.
         let (from, written) = keeper.load(target)?.unzip();
         let recorder = ResultRecorder::lasting(target.clone(), signals, units, written.as_ref())?;
         Ok((RecorderSink { recorder, kept: Some((keeper, from.is_some())) }, from))
     }
 
-    /// Ends the writing; removes checkpoints that are of no use any more.
+    /// Decides after the run whether it can be continued.
+    ///
+    /// The checkpoint file is removed unless the run was interrupted and has a checkpoint.
     fn close(self, run: &RunResult) -> RecorderEnding {
         let RecorderSink { mut recorder, kept } = self;
         match kept {
+            // An interrupted run without any checkpoint cannot continue; its rows become an ordinary partial result.
             Some((keeper, true)) if run.end == End::Interrupted => {
                 let name = keeper.name();
                 RecorderEnding::Suspended(recorder.suspend(), name)
             }
             Some((keeper, _)) => {
+                // The result is written in any case; the failure to remove the file is reported with it.
                 if let Err(failure) = keeper.remove() {
                     recorder.failed(failure);
                 }
@@ -223,12 +261,15 @@ impl RecorderSink {
 }
 
 impl RowSink for RecorderSink {
+    /// Passes a row on; breaks the run when nothing can be written any more.
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
         if self.recorder.row(time, values) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
+    /// Writes the rows to the disk, then the checkpoint that refers to them.
     fn checkpoint(&mut self, at: &Checkpoint) -> ControlFlow<()> {
         let Some((keeper, exists)) = &mut self.kept else { return ControlFlow::Continue(()) };
+        // The rows must be on the disk before the checkpoint claims that they are.
         let Some(written) = self.recorder.mark() else { return ControlFlow::Break(()) };
         match keeper.save(at, &written) {
             Ok(()) => {
@@ -236,17 +277,22 @@ impl RowSink for RecorderSink {
                 ControlFlow::Continue(())
             }
             Err(failure) => {
+                // Without a checkpoint the run could not be continued as the user asked, so it stops here.
                 self.recorder.failed(failure);
                 ControlFlow::Break(())
             }
         }
     }
 
+    /// Time spent on writing, which the solver subtracts from its own.
     fn writing(&self) -> Duration {
         self.recorder.writing()
     }
 }
 
+/// Runs the solver from the start or from a checkpoint, with a progress bar and Ctrl-C.
+///
+/// Returns the outcome and the sink with the rows.
 fn solve(
     model: &CompiledModel,
     settings: &Settings,
@@ -259,6 +305,7 @@ fn solve(
         bar.show(progress.time, None, progress.events);
         true
     };
+    // When the chosen states become singular, the model is sorted again with others.
     let mut reselect = |choice: &StateChoice| model.with_states(choice);
     let mut control =
         Control { interrupt: Some(interrupt::flag()), progress: Some(&mut show), reselect: Some(&mut reselect) };
@@ -267,11 +314,12 @@ fn solve(
         Some(from) => resume(system, settings, inputs, from, &mut rows, &mut control),
         None => simulate(system, settings, inputs, None, &mut rows, &mut control),
     };
+    // The bar is cleared before messages are printed, so that they do not mix on the terminal.
     bar.clear();
     (run, rows)
 }
 
-/// Says how an interrupted run goes on.
+/// Prints the messages of an interrupted run and adds how to continue it. The exit code is 1.
 fn suspended(run: &RunResult, checkpoint: &str, messages: &mut MessageReporter) -> CommandStatus {
     let mut diagnostics = run.diagnostics.clone();
     if let Some(error) = diagnostics.iter_mut().find(|d| d.is_error()) {
@@ -281,6 +329,7 @@ fn suspended(run: &RunResult, checkpoint: &str, messages: &mut MessageReporter) 
     CommandStatus::Wrong
 }
 
+/// Copies the solver's counts and times into the statistics record.
 fn fill(record: &mut StatisticsRecord, run: &RunResult) {
     let s = &run.statistics;
     record.initialize_s = Some(s.initialize_s);
@@ -296,9 +345,10 @@ fn fill(record: &mut StatisticsRecord, run: &RunResult) {
     record.end = Some(run.end.word());
 }
 
-/// What the run had to say, and one line on how it went.
+/// Prints the messages of a run that is over, and one summary line when it succeeded.
 fn report(run: &RunResult, rows: usize, target: &ResultTarget, messages: &MessageReporter) {
     let mut diagnostics = run.diagnostics.clone();
+    // Rows up to the failure are kept, so the error names the file that has them.
     if let Some(error) = diagnostics.iter_mut().find(|d| d.is_error()) {
         error.notes.push(format!(
             "the result up to {} s ({rows} rows) is in `{}`",
@@ -315,11 +365,13 @@ fn report(run: &RunResult, rows: usize, target: &ResultTarget, messages: &Messag
         End::Terminated(why) => {
             format!("ok: terminated at {} s: {why} ({work}), {rows} rows in {}", number::text(run.time), target.name())
         }
+        // Other ends have an error among the diagnostics, which is printed already.
         _ => return,
     };
     messages.remark(&line);
 }
 
+/// Writes the picture that `--plot` asks for. `Err`: there is nothing to draw, or the file cannot be written.
 fn draw(trajectory: &Trajectory, class: &str, path: &Path, messages: &MessageReporter) -> Result<(), CommandFailure> {
     let choice = FigureOptions { title: class.to_owned(), ..FigureOptions::default() };
     let selected = figure(&[Drawn { label: class, trajectory }], &choice)

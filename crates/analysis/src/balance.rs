@@ -1,4 +1,8 @@
-//! Where the power goes: what flows into each component through its ports, and from component to component.
+//! Power balances: the power into each component through its ports, and from component to component.
+//!
+//! A flat model gives the ports ([`ports`]) and the variables to record ([`wanted`]); the rows of a run give powers in
+//! W ([`powers`]); the graph of connections turns them into balances ([`budgets`]) and flows for a Sankey diagram
+//! ([`streams`]). `bramah steady --balance` calls it.
 
 use bramah_expr::VarId;
 use bramah_expr::units::{Dimension, MeasurementUnit};
@@ -7,39 +11,43 @@ use bramah_model::network::ComponentGraph;
 use bramah_results::Trajectory;
 use std::collections::BTreeMap;
 
-/// A port of a top-level component that carries power.
+/// A port of a top-level component through which power flows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerPort {
     /// The component.
     pub component: String,
     /// The port, relative to it.
     pub name: String,
-    /// Flow variable, positive into the component.
+    /// The flow variable, positive into the component.
     flow: VarId,
+    /// What the flow is multiplied with.
     partner: ConjugateVariable,
 }
 
-/// What the flow is multiplied with.
+/// What a flow variable is multiplied with to give power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum ConjugateVariable {
-    /// Nothing: the flow is power itself, as heat is.
+    /// Nothing: the flow itself is power, as heat flow.
     Own,
-    /// A potential, as pressure, voltage or speed.
+    /// A potential, such as pressure, voltage or speed.
     Potential(VarId),
-    /// The rate of a position or angle.
+    /// The derivative of a position or angle.
     Rate(VarId),
 }
 
+/// Dimension of power, kg m^2 s^-3.
 const POWER: Dimension = Dimension::new([1, 2, -3, 0, 0, 0, 0]);
+/// Dimension of energy, kg m^2 s^-2.
 const ENERGY: Dimension = Dimension::new([1, 2, -2, 0, 0, 0, 0]);
 
-/// The ports of the model's top-level components, recognised by the units of their variables.
+/// The power ports of the model's top-level components, recognised by the units of their variables.
 pub fn ports(flat: &FlatModel) -> Vec<PowerPort> {
     let ids = || (0..).map(VarId).zip(&flat.variables);
     let mut found = Vec::new();
     for (flow, variable) in ids().filter(|(_, v)| v.flow) {
         let Some((connector, _)) = variable.name.rsplit_once('.') else { continue };
         let Some((component, port)) = connector.split_once('.') else { continue };
+        // Ports of parts inside a component do not cross its boundary.
         if port.contains('.') {
             continue;
         }
@@ -57,10 +65,13 @@ pub fn ports(flat: &FlatModel) -> Vec<PowerPort> {
     found
 }
 
+/// The dimension of a unit; `None` for a text that is no unit.
 fn dimension(unit: &str) -> Option<Dimension> {
     MeasurementUnit::parse(unit).ok().map(|u| u.dimension)
 }
 
+/// The variable of the same connector whose product with the flow is power, or energy for a position. `None` where
+/// there is none, so that the port carries no power.
 fn partner(flow: Dimension, siblings: &[(VarId, Dimension)]) -> Option<ConjugateVariable> {
     if flow == POWER {
         return Some(ConjugateVariable::Own);
@@ -69,7 +80,7 @@ fn partner(flow: Dimension, siblings: &[(VarId, Dimension)]) -> Option<Conjugate
     times(POWER).map(ConjugateVariable::Potential).or_else(|| times(ENERGY).map(ConjugateVariable::Rate))
 }
 
-/// The variables to record for [`powers`].
+/// The variables to record for [`powers`], each once, in the order of their ids.
 pub fn wanted(ports: &[PowerPort]) -> Vec<VarId> {
     let of = |p: &PowerPort| match p.partner {
         ConjugateVariable::Own => vec![p.flow],
@@ -81,7 +92,7 @@ pub fn wanted(ports: &[PowerPort]) -> Vec<VarId> {
     all
 }
 
-/// The mean power into each port over a run in W. `rows` holds the columns of [`wanted`] first.
+/// The mean power into each port over a run, in W. The first columns of `rows` are those of [`wanted`].
 pub fn powers(ports: &[PowerPort], rows: &Trajectory) -> Vec<f64> {
     let wanted = wanted(ports);
     let column = |v: VarId| wanted.binary_search(&v).ok().map_or(&[] as &[f64], |k| rows.columns[k].as_slice());
@@ -91,13 +102,15 @@ pub fn powers(ports: &[PowerPort], rows: &Trajectory) -> Vec<f64> {
         let steps = rows.times.windows(2).enumerate();
         let energy: f64 = match p.partner {
             ConjugateVariable::Own => steps.map(|(k, t)| 0.5 * (flow[k] + flow[k + 1]) * (t[1] - t[0])).sum(),
+            // Trapezoidal rule over the product.
             ConjugateVariable::Potential(v) => {
                 let p = column(v);
                 steps.map(|(k, t)| 0.5 * (p[k] * flow[k] + p[k + 1] * flow[k + 1]) * (t[1] - t[0])).sum()
             }
             ConjugateVariable::Rate(v) => {
                 let s = column(v);
-                // an event has no width, and a position does not jump but by `reinit`
+                // Force times displacement. The two rows of an event have the same time, and a position jumps only by
+                // `reinit`.
                 let moves = steps.filter(|(_, t)| t[1] > t[0]);
                 moves.map(|(k, _)| 0.5 * (flow[k] + flow[k + 1]) * (s[k + 1] - s[k])).sum()
             }
@@ -107,20 +120,20 @@ pub fn powers(ports: &[PowerPort], rows: &Trajectory) -> Vec<f64> {
     ports.iter().map(one).collect()
 }
 
-/// A component with what flows in through its ports.
+/// The power balance of a component.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerBalance {
     /// Its name.
     pub component: String,
-    /// Its class; empty where it has no connection.
+    /// Its class; empty where the component has no connection.
     pub class: String,
     /// Power into each port in W.
     pub ports: Vec<(String, f64)>,
-    /// Their sum: what is lost or stored; negative for sources.
+    /// Their sum in W: lost or stored power; negative for a source.
     pub net: f64,
 }
 
-/// All components, those that take most first.
+/// The balances of all components, largest net power first.
 pub fn budgets(ports: &[PowerPort], powers: &[f64], graph: &ComponentGraph) -> Vec<PowerBalance> {
     let mut by: BTreeMap<&str, PowerBalance> = BTreeMap::new();
     for (port, &power) in ports.iter().zip(powers) {
@@ -139,19 +152,19 @@ pub fn budgets(ports: &[PowerPort], powers: &[f64], graph: &ComponentGraph) -> V
     all
 }
 
-/// Power from one component to another.
+/// Power that flows from one component to another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PowerFlow {
-    /// Where it comes from.
+    /// The component that it leaves.
     pub from: String,
-    /// Where it goes.
+    /// The component that it enters.
     pub to: String,
     /// In W, positive.
     pub power: f64,
 }
 
-/// Streams through the connections. Where more than two ports meet, each that takes is fed by all that give, in
-/// proportion.
+/// The flows through the connections. Where more than two ports meet, each consumer is fed by all suppliers, in
+/// proportion to their powers.
 pub fn streams(ports: &[PowerPort], powers: &[f64], graph: &ComponentGraph) -> Vec<PowerFlow> {
     let mut streams: BTreeMap<(String, String), f64> = BTreeMap::new();
     for set in meetings(ports, graph) {
@@ -167,15 +180,16 @@ pub fn streams(ports: &[PowerPort], powers: &[f64], graph: &ComponentGraph) -> V
     all.map(|((from, to), power)| PowerFlow { from, to, power }).collect()
 }
 
-/// What components that pass power on keep of it: their losses, and what they store, as streams to `name`. Losses have
-/// no port where they are not led away as heat, so no connection shows them. Where power only ends nothing is left
-/// over.
+/// What components that pass power on lose or store, as flows to `name`.
+///
+/// Losses that are not conducted away as heat have no port, so no connection shows them. A component that only takes
+/// power, as a load, is the end of its flow already.
 pub fn left(budgets: &[PowerBalance], name: &str) -> Vec<PowerFlow> {
     let passing = budgets.iter().filter(|b| b.net > 0.0 && b.ports.iter().any(|p| p.1 < 0.0));
     passing.map(|b| PowerFlow { from: b.component.clone(), to: name.to_owned(), power: b.net }).collect()
 }
 
-/// Groups of connected ports, by index.
+/// Groups of connected ports, by their indices in `ports`.
 fn meetings(ports: &[PowerPort], graph: &ComponentGraph) -> Vec<Vec<usize>> {
     let mut group: Vec<usize> = (0..ports.len()).collect();
     let find = |component: &str, name: &str| ports.iter().position(|p| p.component == component && p.name == name);
@@ -183,6 +197,7 @@ fn meetings(ports: &[PowerPort], graph: &ComponentGraph) -> Vec<Vec<usize>> {
         let Some((a, b)) = graph.edge_endpoints(edge) else { continue };
         let wire = &graph[edge];
         let ends = find(&graph[a].name, &wire.from).zip(find(&graph[b].name, &wire.to));
+        // The graph is undirected, so the ends of an edge may come in either order.
         let swapped = find(&graph[b].name, &wire.from).zip(find(&graph[a].name, &wire.to));
         if let Some((a, b)) = ends.or(swapped) {
             let (low, high) = (group[a].min(group[b]), group[a].max(group[b]));

@@ -1,14 +1,17 @@
-//! Lists of values as people write them: `1,2,5`, `200:1000:5` (from, to, how many), with a unit at the end for all.
+//! Parses lists of values: `1,2,5` or `200:1000:5` (from, to, count), with one unit at the end for all.
+//!
+//! Sweeps, `--over` and `--grid` of the command use it.
 
 use bramah_expr::units::{MeasurementUnit, quantity};
 
-/// Reads values in `unit`, the unit of the quantity; empty for none.
+/// Parses values and converts them to `unit`, which is empty for a pure number.
 ///
 /// # Errors
-/// A sentence saying what is wrong.
+/// A sentence that says what is wrong.
 pub fn values(text: &str, unit: &str) -> Result<Vec<f64>, String> {
     let text = text.trim();
     let last = text.rfind([',', ':']).map_or(0, |i| i + 1);
+    // The unit can only follow the last number.
     let tail = text[last..].trim();
     let digits = number_length(tail);
     let (list, own) = (format!("{}{}", &text[..last], &tail[..digits]), tail[digits..].trim());
@@ -25,12 +28,12 @@ pub fn values(text: &str, unit: &str) -> Result<Vec<f64>, String> {
     out.into_iter().map(convert).collect()
 }
 
-/// How many letters at the beginning are a number.
+/// The length of the longest prefix that is a number, in bytes.
 fn number_length(text: &str) -> usize {
     (1..=text.len()).rev().find(|&n| text.is_char_boundary(n) && text[..n].trim().parse::<f64>().is_ok()).unwrap_or(0)
 }
 
-/// One value, or `from:to:count`.
+/// The values of one item: a number, or `from:to:count` at equal distances.
 fn stretch(item: &str) -> Result<Vec<f64>, String> {
     let number = |t: &str| match quantity(t) {
         Ok((v, None)) if v.is_finite() => Ok(v),

@@ -1,5 +1,8 @@
-//! Parameters and inputs made states that stand still, outputs made states that add up: the Jacobian of the system so
-//! made holds every derivative of the original one.
+//! Lifts parameters and inputs to constant states and outputs to derivatives of further states.
+//!
+//! A [`FlatModel`] enters; a [`StateAugmentedModel`] leaves. Its equations hold der(p) = 0 for each lifted quantity p
+//! and der(s) = y for each output y. The Jacobian of this system by its states therefore holds all derivatives of the
+//! original model: by states, parameters and inputs, of rates and outputs. `local` and `tangent` evaluate it.
 
 use bramah_expr::visit::Substitution;
 use bramah_expr::{ExprId, Exprs, VarId};
@@ -8,35 +11,37 @@ use bramah_model::flat::{
     WhenClause,
 };
 
-/// A flat model whose chosen parameters and inputs are states with derivative 0, and whose outputs are the derivatives
-/// of further states.
+/// A lifted model.
 #[derive(Clone, Debug)]
 pub struct StateAugmentedModel {
-    /// The model.
+    /// The lifted equations. Variables of the original model keep their ids.
     pub flat: FlatModel,
-    /// For each chosen parameter, in the order asked for.
+    /// The lifted parameters, in the order requested.
     pub parameters: Vec<AugmentedState>,
-    /// For each top-level input, in declaration order.
+    /// The lifted top-level inputs, in declaration order.
     pub inputs: Vec<AugmentedState>,
-    /// For each output asked for: the state whose derivative it is.
+    /// For each output requested the state whose derivative it is.
     pub outputs: Vec<VarId>,
 }
 
-/// A quantity that became a state.
+/// A parameter or input that became a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AugmentedState {
     /// The state.
     pub state: VarId,
-    /// The parameter that holds its value at the start.
+    /// The parameter that holds the state's start value.
     pub start: VarId,
 }
 
-/// Lifts `parameters`, all inputs and `outputs`. Parameters that depend on lifted ones become expressions of them;
-/// attributes (`start`, `nominal`, bounds) keep reading the parameters' values at the start.
+/// Lifts `parameters`, all inputs and `outputs`.
+///
+/// Parameters that depend on lifted ones become expressions of them. Attributes (`start`, `nominal`, bounds) keep
+/// reading the parameters' values at the start.
 pub fn lift(flat: &FlatModel, parameters: &[VarId], outputs: &[VarId]) -> StateAugmentedModel {
     let mut lift = StateAugmentation::new(flat.clone());
     let raised: Vec<AugmentedState> = parameters.iter().map(|&p| lift.parameter(p)).collect();
     lift.dependents(parameters);
+    // Inputs need no substitution: the variable itself becomes the state.
     lift.substitute();
     let inputs = (0..).map(VarId).zip(&flat.variables).filter(|(_, v)| v.input).map(|(v, _)| v);
     let inputs: Vec<AugmentedState> = inputs.map(|u| lift.input(u)).collect();
@@ -44,7 +49,7 @@ pub fn lift(flat: &FlatModel, parameters: &[VarId], outputs: &[VarId]) -> StateA
     StateAugmentedModel { flat: lift.flat, parameters: raised, inputs, outputs }
 }
 
-/// Lifts parameters alone: inputs stay inputs.
+/// Lifts `parameters` alone; inputs stay inputs.
 pub fn free(flat: &FlatModel, parameters: &[VarId]) -> StateAugmentedModel {
     let mut lift = StateAugmentation::new(flat.clone());
     let parameters: Vec<AugmentedState> = parameters.iter().map(|&p| lift.parameter(p)).collect();
@@ -54,23 +59,28 @@ pub fn free(flat: &FlatModel, parameters: &[VarId]) -> StateAugmentedModel {
     StateAugmentedModel { flat: lift.flat, parameters, inputs: Vec::new(), outputs: Vec::new() }
 }
 
+/// A flat model while it is lifted.
 struct StateAugmentation {
+    /// The model, changed in place.
     flat: FlatModel,
+    /// Expressions to replace, each with its replacement.
     replacements: Vec<(ExprId, ExprId)>,
 }
 
 impl StateAugmentation {
+    /// Starts with a model and no replacements.
     fn new(flat: FlatModel) -> Self {
         StateAugmentation { flat, replacements: Vec::new() }
     }
 
+    /// Adds a variable and returns its id.
     fn add(&mut self, variable: FlatVariable) -> VarId {
         let v = VarId(u32::try_from(self.flat.variables.len()).expect("fewer than 2^32 variables"));
         self.flat.variables.push(variable);
         v
     }
 
-    /// A hidden variable like `of` under another name.
+    /// Adds a hidden variable with the attributes of `of` under another name.
     fn beside(&mut self, of: VarId, name: String, variability: Variability) -> VarId {
         let model = &self.flat.variables[of.index()];
         let origin = ElementOrigin { kind: OriginKind::Made, ..model.origin };
@@ -87,22 +97,25 @@ impl StateAugmentation {
         self.add(variable)
     }
 
+    /// Adds an equation with the origin of the variable `of`.
     fn equation(&mut self, lhs: ExprId, rhs: ExprId, of: VarId) {
         let origin = ElementOrigin { kind: OriginKind::Made, ..self.flat.variables[of.index()].origin };
         self.flat.equations.push(FlatEquation { lhs, rhs, origin });
     }
 
-    /// `der(state) = 0` from the value of `start`.
+    /// Makes a variable a constant state: `der(state) = 0`, started at the value of `start`.
     fn stand_still(&mut self, state: VarId, start: VarId) {
         let value = self.flat.exprs.var(start);
         let variable = &mut self.flat.variables[state.index()];
         variable.start = Some(value);
         variable.fixed = true;
+        // The structural analysis must choose this variable as a state.
         variable.state_select = StateSelect::Always;
         let der = self.flat.exprs.der(state);
         self.equation(der, Exprs::ZERO, state);
     }
 
+    /// Lifts a parameter. The parameter itself remains and holds the start value.
     fn parameter(&mut self, p: VarId) -> AugmentedState {
         let name = format!("{} (free)", self.flat.variables[p.index()].name);
         let state = self.beside(p, name, Variability::Continuous);
@@ -111,16 +124,17 @@ impl StateAugmentation {
         AugmentedState { state, start: p }
     }
 
+    /// Notes that a variable is to be replaced by another one.
     fn replace(&mut self, old: VarId, new: VarId) {
         let (old, new) = (self.flat.exprs.var(old), self.flat.exprs.var(new));
         self.replacements.push((old, new));
     }
 
-    /// Real parameters whose bindings read a lifted one, however indirectly: their bindings, over the states, stand in
-    /// their place.
+    /// Notes for each Real parameter that depends on a lifted one its binding as a replacement.
     fn dependents(&mut self, lifted: &[VarId]) {
         let mut open = reading(&self.flat, lifted);
         loop {
+            // A binding that reads another dependent parameter waits until that one has its replacement.
             let ready = |&(_, binding): &(VarId, ExprId)| {
                 !self.flat.exprs.variables(binding).iter().any(|w| open.iter().any(|(v, _)| v == w))
             };
@@ -137,7 +151,7 @@ impl StateAugmentation {
         }
     }
 
-    /// Puts the states in the place of their parameters in everything that holds during the run.
+    /// Applies the replacements to everything that holds during a run.
     fn substitute(&mut self) {
         let mut substitution = Substitution::new(self.replacements.drain(..));
         let FlatModel { exprs, equations, initial_equations, whens, asserts, conserved, .. } = &mut self.flat;
@@ -151,6 +165,7 @@ impl StateAugmentation {
         whens.iter_mut().for_each(|w| change_when(w, &mut change));
     }
 
+    /// Lifts an input: the variable becomes a state, and a new parameter holds its start value.
     fn input(&mut self, u: VarId) -> AugmentedState {
         let variable = &self.flat.variables[u.index()];
         let binding = variable.binding.or(variable.start);
@@ -165,12 +180,14 @@ impl StateAugmentation {
         AugmentedState { state: u, start }
     }
 
+    /// Adds a state whose derivative is `y`.
     fn output(&mut self, y: VarId) -> VarId {
         let name = format!("integral of {}", self.flat.variables[y.index()].name);
         let sum = self.beside(y, name, Variability::Continuous);
         let variable = &mut self.flat.variables[sum.index()];
         variable.start = Some(Exprs::ZERO);
         variable.fixed = true;
+        // The unit of y would be wrong for its integral.
         variable.unit = None;
         variable.state_select = StateSelect::Always;
         let (der, value) = (self.flat.exprs.der(sum), self.flat.exprs.var(y));
@@ -179,7 +196,7 @@ impl StateAugmentation {
     }
 }
 
-/// Real parameters with bindings that read one of these, however indirectly.
+/// Real parameters whose bindings depend on one of these, directly or not, with their bindings.
 pub(super) fn reading(flat: &FlatModel, lifted: &[VarId]) -> Vec<(VarId, ExprId)> {
     let mut moved = vec![false; flat.variables.len()];
     lifted.iter().for_each(|p| moved[p.index()] = true);
@@ -200,6 +217,7 @@ pub(super) fn reading(flat: &FlatModel, lifted: &[VarId]) -> Vec<(VarId, ExprId)
     }
 }
 
+/// Applies a change to all expressions of a `when` clause.
 fn change_when(when: &mut WhenClause, change: &mut impl FnMut(&mut ExprId)) {
     for branch in &mut when.branches {
         branch.conditions.iter_mut().for_each(&mut *change);

@@ -1,5 +1,8 @@
-//! A model as x' = f(x, theta, u), y = g(x, theta, u) at one point: values, and exact derivatives by the system's own
-//! Jacobian. Algebraic unknowns are eliminated by the implicit function theorem.
+//! Evaluates a model as x' = f(x, theta, u), y = g(x, theta, u) at single points, with exact derivatives.
+//!
+//! An [`EvaluationPlan`] (made from a lifted model) and values of x, theta and u enter; rates, outputs and the matrices
+//! of a [`Linearization`] leave. `linear`, `steady`, the inverse model and the diagnosis in `crates/gap` use it. The
+//! system's own Jacobian holds the derivatives; algebraic unknowns are eliminated by the implicit function theorem.
 
 mod derivatives;
 mod newton;
@@ -15,19 +18,19 @@ use nalgebra::{DMatrix, DVector};
 pub use plan::EvaluationPlan;
 use std::sync::Arc;
 
-/// A rate that reads others changes by more than this part of it when they do.
+/// A rate reads other rates when it changes by more than this share of itself as they change.
 const PROBED: f64 = 1e-9;
 
-/// Why there is no value.
+/// Why a model has no value at a point.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum LocalError {
-    /// The equations have no solution there.
+    /// The equations have no solution.
     #[error("{}", .0.message)]
     NoSolution(Box<Diagnostic>),
     /// A value or derivative is not finite.
     #[error("a value is not finite")]
     NonFinite,
-    /// The algebraic part does not determine its unknowns.
+    /// The algebraic equations do not determine their unknowns.
     #[error("the equations are singular")]
     Singular,
 }
@@ -38,35 +41,42 @@ impl From<Box<Diagnostic>> for LocalError {
     }
 }
 
-/// A model that is evaluated point by point; one for each thread.
+/// Evaluates a model point by point. It holds buffers and the last solution, so each thread needs its own.
 #[derive(Debug)]
 pub struct LocalEvaluator {
+    /// The structure of the equations.
     plan: Arc<EvaluationPlan>,
+    /// Values of all variables at the last point.
     point: ConsistentPoint,
+    /// Columns of the system at the last point.
     y: Vec<f64>,
+    /// Derivatives of these columns.
     yp: Vec<f64>,
+    /// Residual of the system; one entry for each row.
     residual: Vec<f64>,
+    /// Entries of the Jacobian by y, in the order of the system's pattern.
     entries: Vec<f64>,
+    /// Entries of the Jacobian by y and yp together (coefficient 1), in the same order.
     torn_entries: Vec<f64>,
-    /// Implicit unknowns of the last solution.
+    /// Implicit unknowns of the last solution, at which the next Newton iteration starts after a failure.
     implicit: Vec<f64>,
-    /// Some rate or output reads the rate of another state (`f = d*der(s)`).
+    /// Whether some rate or output reads the rate of another state, as in `f = d*der(s)`.
     reads_rates: bool,
-    /// Entries of `linear` (row, column) that went through implicit unknowns.
+    /// Row and column of the entries of `linear` that depend on implicit unknowns; they are cleared at the next point.
     through_unknowns: Vec<(usize, usize)>,
-    /// x' at the last point.
+    /// x' at the last point, n entries.
     pub rates: Vec<f64>,
-    /// y at the last point.
+    /// y at the last point, p entries.
     pub outputs: Vec<f64>,
     /// Derivatives at the last point.
     pub linear: Linearization,
 }
 
 impl LocalEvaluator {
-    /// At the start of the model, with these parameters and inputs.
+    /// An evaluator at the model's start, with these parameters and inputs.
     ///
     /// # Errors
-    /// When the initial system has no solution.
+    /// When the initial equations have no solution.
     pub fn start(plan: Arc<EvaluationPlan>, time: f64, theta: &[f64], u: &[f64]) -> Result<Self, LocalError> {
         let given = plan.raised.iter().zip(theta.iter().chain(u)).map(|(p, v)| (p.start, *v)).collect();
         let point = ConsistentPoint::start(plan.system.clone(), time, given)?;
@@ -98,8 +108,9 @@ impl LocalEvaluator {
         Ok(local)
     }
 
-    /// Whether explicit rows change with the rates put into them; there is no value at the start where this cannot be
-    /// told.
+    /// Whether rows of rates change with the rates put into them.
+    ///
+    /// True where it cannot be found out, because the equations have no value at the start.
     fn looks_for_read_rates(&mut self, time: f64) -> bool {
         let LocalEvaluator { plan, point, y, yp, residual, .. } = self;
         let system = &plan.system;
@@ -108,6 +119,7 @@ impl LocalEvaluator {
             yp[j] = 0.0;
         }
         let mut rates = |probe: f64| {
+            // Different values, so that their effects on a row do not cancel.
             let tried: Vec<f64> = (0..yp.len()).map(|j| probe * (1.0 + 0.37 * j as f64)).collect();
             plan.explicit.iter().for_each(|&j| yp[j] = tried[j]);
             let known = system.residual(time, y, yp, &mut point.values, residual).is_ok();
@@ -117,12 +129,12 @@ impl LocalEvaluator {
         without.iter().zip(&with).any(|(a, b)| (a - b).abs() > PROBED * (1.0 + a.abs()))
     }
 
-    /// What is evaluated.
+    /// The structure of the equations.
     pub fn plan(&self) -> &Arc<EvaluationPlan> {
         &self.plan
     }
 
-    /// Takes over a state of the model itself, as a run left it: discrete values too. Evaluate afterwards.
+    /// Takes over a state of the original model, discrete values included. Evaluate afterwards.
     pub fn adopt(&mut self, state: &bramah_solve::State) {
         state.restore(&self.plan.system, &mut self.point.values);
     }
@@ -133,7 +145,7 @@ impl LocalEvaluator {
         self.plan.states.iter().map(|&(_, v)| self.point.values[layout.var(v)]).collect()
     }
 
-    /// The usual size of each state, positive.
+    /// The nominal value of each state, positive.
     pub fn nominals(&self) -> Vec<f64> {
         self.plan.states.iter().map(|&(_, v)| self.point.nominal(v)).collect()
     }
@@ -143,7 +155,7 @@ impl LocalEvaluator {
         self.point.values[self.plan.system.layout.var(v)]
     }
 
-    /// Values of x' and y.
+    /// Computes `rates` and `outputs`.
     ///
     /// # Errors
     /// [`LocalError`]; the values are then meaningless.
@@ -153,6 +165,7 @@ impl LocalEvaluator {
         result
     }
 
+    /// Solves the equations at a point and fills `rates` and `outputs`.
     fn values(&mut self, time: f64, x: &[f64], theta: &[f64], u: &[f64]) -> Result<(), LocalError> {
         let LocalEvaluator { plan, point, y, yp, residual, entries, torn_entries, reads_rates, .. } = self;
         let system = &plan.system;
@@ -160,8 +173,10 @@ impl LocalEvaluator {
             y[column] = value;
         }
         for (place, &value) in plan.raised.iter().zip(theta.iter().chain(u)) {
+            // An alias with the opposite sign holds the negative value.
             y[place.column] = if place.negated { -value } else { value };
         }
+        // `settle` also handles events, which discrete variables need, and it solves where Newton's method does not.
         if plan.discrete || !plan.newton(time, y, yp, residual, entries, torn_entries, &mut point.values)? {
             for (j, c) in system.columns.iter().enumerate().filter(|(_, c)| c.is_state()) {
                 point.values[system.layout.var(c.variable)] = y[j];
@@ -185,7 +200,7 @@ impl LocalEvaluator {
         if finite { Ok(()) } else { Err(LocalError::NonFinite) }
     }
 
-    /// Remembers the implicit unknowns where there is a solution; where there is none, the next search begins there.
+    /// Keeps the implicit unknowns of a solution, or goes back to the last kept ones.
     fn remember(&mut self, found: bool) {
         for (kept, &(column, torn)) in self.implicit.iter_mut().zip(&self.plan.implicit) {
             let unknown = if torn { &mut self.yp[column] } else { &mut self.y[column] };
@@ -197,7 +212,7 @@ impl LocalEvaluator {
         }
     }
 
-    /// x' as a vector.
+    /// x' as a column vector.
     pub fn rate_vector(&self) -> DVector<f64> {
         DVector::from_column_slice(&self.rates)
     }

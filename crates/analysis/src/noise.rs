@@ -1,14 +1,18 @@
-//! The noise floor of a sensor, from its samples alone.
+//! Estimates the noise of a sensor from its samples alone.
+//!
+//! Samples of a signal enter; one standard deviation leaves. `identify` uses it for signals without an `accuracy`, the
+//! diagnosis in `crates/gap` as the smallest error that counts. High differences remove the slow signal and keep noise.
 
-/// Differences of this order cancel what a signal holds below about a sixth of the sampling rate.
+/// Order of the differences. They remove the part of a signal below about a sixth of the sampling rate.
 const ORDER: usize = 6;
-/// The sum of squared binomial coefficients of that order: how much white noise they amplify, C(12, 6).
+/// Variance of these differences for white noise of variance 1: the sum of squared binomial coefficients, C(12, 6).
 const AMPLIFICATION: f64 = 924.0;
-/// Median absolute deviation to standard deviation of a normal distribution.
+/// Ratio of the standard deviation to the median absolute deviation of a normal distribution.
 const MAD: f64 = 1.4826;
 
-/// Standard deviation of the white noise in the samples of several recordings, in the signal's unit: robust, from
-/// sixth differences; 0 where there are too few samples. Gaps (NaN) are left out.
+/// Standard deviation of white noise in several recordings, in the signal's unit; 0 where there are too few samples.
+///
+/// It comes from the median, so single outliers do not matter. NaN is left out.
 pub fn white(recordings: &[&[f64]]) -> f64 {
     let mut differences: Vec<f64> = recordings.iter().flat_map(|r| sixth_differences(r)).map(f64::abs).collect();
     if differences.is_empty() {
@@ -19,11 +23,12 @@ pub fn white(recordings: &[&[f64]]) -> f64 {
     MAD * *median / AMPLIFICATION.sqrt()
 }
 
-/// The same, and never below the noise of the finest quantisation seen.
+/// As [`white`], but at least the deviation of the finest quantisation seen, step/sqrt(12).
 pub fn floor(recordings: &[&[f64]]) -> f64 {
     white(recordings).max(step(recordings) / 12.0_f64.sqrt())
 }
 
+/// The differences of order 6; those over a gap (NaN) are left out.
 fn sixth_differences(samples: &[f64]) -> Vec<f64> {
     let mut d: Vec<f64> = samples.to_vec();
     for _ in 0..ORDER {
@@ -33,7 +38,7 @@ fn sixth_differences(samples: &[f64]) -> Vec<f64> {
     d
 }
 
-/// The smallest distance between different neighbouring samples: a quantiser's step, if there is one.
+/// The smallest difference between neighbouring samples that are not equal: the step of a quantiser, if there is one.
 fn step(recordings: &[&[f64]]) -> f64 {
     let mut smallest = f64::INFINITY;
     for samples in recordings {

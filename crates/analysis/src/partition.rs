@@ -1,25 +1,29 @@
-//! Zones of the flow over the speed of a pump under a load: dead, load and saturation zone.
+//! Zones of a pump's flow over its speed at a load: dead zone, load zone and saturation zone.
 //!
-//! In the load zone the flow is a straight line over the speed. It ends below where the pump just covers its leakage,
-//! above where the flow follows the speed no longer. Source: Zhang et al., Processes 2021, 9, 814, section 2 and Fig.
-//! 2.
+//! A prepared model and an operating point enter; [`curve`] returns flow over speed by a chain of operating points, and
+//! [`zones`] fits the zones. `bramah partition` calls it.
+//!
+//! In the load zone the flow is a straight line over the speed. It begins where the pump just covers its leakage, and
+//! ends where the flow no longer follows the speed. Source: Zhang et al., Processes 2021, 9, 814, section 2 and Fig. 2.
 
 use super::LocalEvaluator;
 use super::linear::LinearizationSetup;
 use super::steady::{OperatingPoint, SteadyStateError, reach};
 use bramah_expr::VarId;
 
-/// No operating point was found at a speed.
+/// A speed at which no operating point was found.
 #[derive(Clone, Debug)]
 pub struct OperatingPointFailure {
-    /// The speed.
+    /// The speed, in the unit of its variable.
     pub speed: f64,
-    /// Why.
+    /// The reason.
     pub why: SteadyStateError,
 }
 
-/// Flow, the first output of `local`, over increasing speeds at a load: the operating point is followed from the
-/// slowest speed to either side. The point at the slowest speed comes with it, from which another load is reached.
+/// The flow (the first output of `local`) over ascending speeds at a load.
+///
+/// The operating point is followed from the slowest speed to both sides. Returns the point at the slowest speed, from
+/// which another load can be reached, and pairs of speed and flow.
 ///
 /// # Errors
 /// [`OperatingPointFailure`].
@@ -47,41 +51,43 @@ pub fn curve(
     Ok((first, points))
 }
 
-/// What a curve of flow over speed says of one direction of rotation.
+/// The zones of one direction of rotation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlowCharacteristic {
-    /// Speed at which the line of the load zone has no flow: the end of the dead zone.
+    /// Speed at which the line of the load zone crosses zero flow: the end of the dead zone.
     pub dead: f64,
-    /// Flow over speed in the load zone.
+    /// Slope of the line, flow over speed.
     pub slope: f64,
-    /// Share of the variance in the load zone that the line explains.
+    /// Coefficient of determination of the line in the load zone.
     pub straight: f64,
-    /// Speed at which the line reaches the flow that is not exceeded; `None` where the curve ends before.
+    /// Speed at which the line reaches the largest flow; `None` where the curve ends in the load zone.
     pub saturation: Option<f64>,
 }
 
-/// Intervals whose slope is above this part of the usual one belong to the load zone: half way between it and the flat
-/// zones.
+/// Intervals with a slope above this share of the usual one belong to the load zone: halfway to that of flat zones.
 const LOADED: f64 = 0.5;
-/// Points that a line needs beside its ends.
+/// Smallest number of inner points for a line.
 const LEAST: usize = 3;
 
-/// The zones for positive speeds, and for negative ones with the sign of the curve; `None` where a direction has no
-/// load zone of at least three points.
+/// The zones for positive and for negative speeds; `None` where a direction has no load zone with at least three inner
+/// points.
 ///
-/// `curve` holds speed and flow, the speeds increasing, none twice.
+/// `curve` holds pairs of speed and flow at ascending, distinct speeds.
 pub fn zones(curve: &[(f64, f64)]) -> [Option<FlowCharacteristic>; 2] {
     let forward: Vec<(f64, f64)> = curve.iter().copied().filter(|p| p.0 >= 0.0).collect();
+    // Rotated about the origin, the negative branch is a positive one.
     let backward: Vec<(f64, f64)> = curve.iter().rev().map(|p| (-p.0, -p.1)).filter(|p| p.0 >= 0.0).collect();
     let mirrored =
         |z: FlowCharacteristic| FlowCharacteristic { dead: -z.dead, saturation: z.saturation.map(|s| -s), ..z };
     [one_way(&forward), one_way(&backward).map(mirrored)]
 }
 
+/// The zones of a curve at positive speeds.
 fn one_way(curve: &[(f64, f64)]) -> Option<FlowCharacteristic> {
     let slopes: Vec<f64> = curve.windows(2).map(|w| (w[1].1 - w[0].1) / (w[1].0 - w[0].0)).collect();
     let usual = usual_slope(curve, &slopes)?;
     let (from, to) = longest(&slopes, |s| s > LOADED * usual)?;
+    // The end points belong to the intervals at which the zones change, so the line leaves them out.
     let inner = curve.get(from + 1..to)?;
     if inner.len() < LEAST {
         return None;
@@ -95,8 +101,9 @@ fn one_way(curve: &[(f64, f64)]) -> Option<FlowCharacteristic> {
     Some(FlowCharacteristic { dead: -offset / slope, slope, straight, saturation })
 }
 
-/// The slope up to which half of the whole rise is made: flat zones add little to it however long they are, and a few
-/// steep intervals, where a valve opens, not much.
+/// The median slope, weighted by rise: half of the total rise is made at slopes up to it.
+///
+/// Flat zones contribute little rise however long they are, and so do a few steep intervals where a valve opens.
 fn usual_slope(curve: &[(f64, f64)], slopes: &[f64]) -> Option<f64> {
     let rise = |i: usize| curve[i + 1].1 - curve[i].1;
     let mut rising: Vec<usize> = (0..slopes.len()).filter(|&i| slopes[i].is_finite() && rise(i) > 0.0).collect();
@@ -110,7 +117,7 @@ fn usual_slope(curve: &[(f64, f64)], slopes: &[f64]) -> Option<f64> {
     reached.map(|i| slopes[i])
 }
 
-/// The longest run of intervals that hold, as the indices of its first and last point.
+/// The longest sequence of intervals with slopes that hold, as the indices of its first and last point.
 fn longest(slopes: &[f64], holds: impl Fn(f64) -> bool) -> Option<(usize, usize)> {
     let mut best: Option<(usize, usize)> = None;
     let mut start = None;
@@ -129,7 +136,7 @@ fn longest(slopes: &[f64], holds: impl Fn(f64) -> bool) -> Option<(usize, usize)
     best
 }
 
-/// Slope and intercept by least squares, and the share of the variance that the line explains.
+/// Slope, intercept and coefficient of determination of a least-squares line.
 fn line(points: &[(f64, f64)]) -> (f64, f64, f64) {
     let n = points.len() as f64;
     let (x, y) = (points.iter().map(|p| p.0).sum::<f64>() / n, points.iter().map(|p| p.1).sum::<f64>() / n);

@@ -1,9 +1,12 @@
-//! Trajectory sensitivities: how trajectories of variables move with parameters and start values.
+//! Trajectory sensitivities: how the trajectories of variables change with parameters.
 //!
-//! By the equations' own derivatives, carried along in one run and right across events: this is checked against one
-//! difference in which all parameters move. Else by central differences of tight runs: the run itself finds the moved
-//! event times. Where a jump moves in time, the difference between the two events is the jump over the step, as it must
-//! be.
+//! A compiled model, settings of a run and parameters enter; a [`Sensitivity`] leaves, for `bramah sensitivity`, the
+//! trait [`crate::Analyze`] and Python. The user's page is `docs/sensitivity.md`.
+//!
+//! Sensitivities are integrated with the states ([`TangentModel`]) and are right across events. They are checked once
+//! against a finite difference in which all parameters move. Where they fail, central differences of tight runs replace
+//! them, in which each run finds the moved event times itself. Where a jump moves in time, the difference between the
+//! two event times is the jump over the step.
 
 use super::TangentModel;
 use super::lift::reading;
@@ -15,34 +18,34 @@ use bramah_solve::{Control, Settings, TangentRequest, signals, simulate};
 use rayon::prelude::*;
 use std::sync::atomic::AtomicBool;
 
-/// The trajectory of variables and how it moves.
+/// Trajectories of variables and their derivatives by parameters.
 #[derive(Clone, Debug)]
 pub struct Sensitivity {
-    /// The plain run.
+    /// The run with the parameters' own values; its columns are the variables.
     pub plain: Trajectory,
-    /// The parameters, by name, with the size of the change that the columns refer to.
+    /// Name of each parameter, and the change that its columns refer to.
     pub parameters: Vec<(String, f64)>,
-    /// By parameter: one column a variable, the change of the variable per change of the parameter by its size.
+    /// For each parameter one column for each variable: derivative times the parameter's size, at the rows of `plain`.
     pub columns: Vec<Vec<Vec<f64>>>,
-    /// By parameter: why its columns are differences; `None` where the run carried them along.
+    /// For each parameter why its columns are finite differences; `None` where they were integrated.
     pub differences: Vec<Option<String>>,
 }
 
-/// A parameter that is moved.
+/// A parameter by which to differentiate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SensitivityParameter {
-    /// The parameter.
+    /// The model's parameter.
     pub variable: VarId,
-    /// Its name.
+    /// Its dotted name.
     pub name: String,
     /// Its value.
     pub value: f64,
-    /// Its own size: its value, or where that is zero its nominal value.
+    /// The change that its sensitivity refers to: its absolute value, or its nominal value where that is zero.
     pub size: f64,
 }
 
 impl SensitivityParameter {
-    /// A parameter whose value is among the values of all parameters.
+    /// A parameter with its value and size. `values` holds the values of all parameters.
     pub fn of(model: &CompiledModel, variable: VarId, values: &[f64]) -> Self {
         let system = &model.system;
         let value = values[system.layout.var(variable)];
@@ -51,22 +54,22 @@ impl SensitivityParameter {
     }
 }
 
-/// Relative tolerance of runs whose derivatives are wanted, at most.
+/// Largest relative tolerance of runs with sensitivities.
 pub const TOLERANCE: f64 = 1e-9;
 
-/// Step of the differences as a part of a parameter's size.
+/// Step of central differences, relative to a parameter's size.
 const STEP: f64 = 1e-4;
 
-/// Trials that may fail before the rest of the parameters is left to differences.
+/// Largest number of failed trials; after these the remaining parameters get differences.
 const MOST_DOUBTS: usize = 16;
 
-/// Per parameter: its columns as the run carried them along, or why it could not.
+/// For each parameter its integrated columns, or why there are none.
 type SensitivityColumns = Vec<Result<Vec<Vec<f64>>, String>>;
 
-/// Sensitivities to `moved`, each with respect to a relative change.
+/// Computes the sensitivities to `moved`, each by its own size.
 ///
 /// # Errors
-/// What the first run that failed said.
+/// The message of the first run that failed.
 pub fn sensitivity(
     model: &CompiledModel,
     settings: &Settings,
@@ -80,6 +83,7 @@ pub fn sensitivity(
     let doubtful = moved.iter().zip(&carried).filter(|(_, c)| c.is_err()).map(|(m, _)| m.clone());
     let doubtful: Vec<SensitivityParameter> = doubtful.collect();
     let tight = Settings { tolerance: settings.tolerance.min(TIGHT), ..settings.clone() };
+    // Tight runs may fail where those with the tolerance of the settings do not.
     let mut others = by_differences(model, &tight, &doubtful, interrupt)
         .or_else(|_| by_differences(model, &settings, &doubtful, interrupt))?
         .into_iter();
@@ -96,8 +100,10 @@ pub fn sensitivity(
     Ok(found)
 }
 
-/// By the equations, all at once where that holds. Where it does not, each half by itself and so on: one parameter that
-/// a run cannot carry along leaves the others exact.
+/// Integrates the sensitivities to all parameters at once; where that fails, to each half of them, and so on.
+///
+/// One parameter without valid sensitivities thus leaves those of the others exact. `plain` receives the rows of a run,
+/// `doubts` counts the failures left.
 fn carried(
     model: &CompiledModel,
     settings: &Settings,
@@ -121,21 +127,25 @@ fn carried(
     }
 }
 
-/// How far what was carried along may be from a difference, as a part of its largest value.
+/// Largest difference between a sensitivity and a finite difference, relative to the largest value of the column.
 const AGREE: f64 = 1e-3;
 
-/// Tolerance of runs whose difference shall not show their own errors: behind events these depend on the parameters as
-/// steps do, by jumps.
+/// Tolerance of runs whose differences must not show integration errors. Behind events these errors jump with the
+/// parameters, because the number of steps does.
 const TIGHT: f64 = 1e-12;
 
-/// Steps of that difference, as a part of the parameters, and the tolerance of its runs where it is not that of the run
-/// itself. A long step, so that errors do not show; where they do, tight runs; and where these meet something strongly
-/// curved, a shorter step. Wrong derivatives agree with none.
+/// Steps of the check relative to the parameters' sizes, and tolerances of its runs (1.0 keeps that of the settings).
+///
+/// First a long step, out of which integration errors do not show; then tight runs; then a shorter step for strongly
+/// curved trajectories. Wrong sensitivities agree with none of them.
 const CHECKS: [(f64, f64); 3] = [(1e-3, 1.0), (1e-3, TIGHT), (1e-4, TIGHT)];
-/// The part of the rows that may lie between the moved times of an event.
+/// Share of rows that may disagree, because they lie between the shifted times of an event.
 const BETWEEN: f64 = 0.02;
 
-/// Carried along by the run; the error says why this cannot be.
+/// Integrates the sensitivities to `moved` and checks them.
+///
+/// # Errors
+/// Why they cannot be integrated or are not valid.
 fn by_equations(
     model: &CompiledModel,
     settings: &Settings,
@@ -145,7 +155,8 @@ fn by_equations(
     let directions: Vec<(VarId, f64)> = moved.iter().map(|m| (m.variable, m.size)).collect();
     let tangent = TangentModel::new(&model.flat, &directions)?;
     let carried = tangent.starts(settings, &[])?;
-    // steps that suit the states may leap over what moves the derivatives
+    // Usually only the states control the step size. Steps that suit them may be too long for the sensitivities; then
+    // these control the step too.
     let run = |controlled: bool| {
         let carried = TangentRequest { controlled, ..carried.clone() };
         along_the_run(model, (&tangent, carried), settings, moved, interrupt)
@@ -153,7 +164,7 @@ fn by_equations(
     run(false).or_else(|why| run(true).map_err(|_| why))
 }
 
-/// The same with these derivatives at the start.
+/// One run with sensitivities that start as `carried` says. Returns its rows and the columns of each parameter.
 fn along_the_run(
     model: &CompiledModel,
     (tangent, carried): (&TangentModel, TangentRequest),
@@ -162,6 +173,7 @@ fn along_the_run(
     interrupt: &AtomicBool,
 ) -> Result<(Trajectory, Vec<Vec<Vec<f64>>>), String> {
     let all = Settings { tangents: Some(carried), ..settings.clone() };
+    // The run records `wanted` once for the values and once more for each parameter.
     let cells: Vec<VarId> = (0..=moved.len()).flat_map(|_| settings.wanted.iter().copied()).collect();
     let mut rows = Trajectory::new(signals(&tangent.system.dae, &cells));
     let mut control = Control { interrupt: Some(interrupt), ..Control::default() };
@@ -179,7 +191,7 @@ fn along_the_run(
     Ok((rows, columns))
 }
 
-/// Compares with the difference along one direction in which all parameters move.
+/// Checks against a finite difference along one direction in which all parameters move.
 fn agrees(
     model: &CompiledModel,
     settings: &Settings,
@@ -187,12 +199,13 @@ fn agrees(
     (plain, columns): (&Trajectory, &[Vec<Vec<f64>>]),
     interrupt: &AtomicBool,
 ) -> Result<(), String> {
-    // those that follow others stay with them: moved themselves they would follow no more
+    // A parameter bound to another moved one follows it. Moved itself it would lose its binding.
     let follows = |m: &SensitivityParameter| {
         let others = moved.iter().filter(|o| o.variable != m.variable);
         others.into_iter().any(|o| reading(&model.flat, &[o.variable]).iter().any(|(v, _)| *v == m.variable))
     };
     let share = |(k, m): (usize, &SensitivityParameter)| {
+        // Different shares, so that errors of several columns do not cancel.
         let part = (1.0 + k as f64).cos();
         if follows(m) { 0.0 } else { inward(model, m).map_or(part, |side| side * part.abs()) }
     };
@@ -206,7 +219,7 @@ fn agrees(
     first.or_else(|why| checks.find_map(Result::ok).ok_or(why))
 }
 
-/// The side on which a parameter has room, where it stands at a bound.
+/// The side (1 or -1) on which a parameter has room, where it stands at a bound; `None` for room on both sides.
 fn inward(model: &CompiledModel, moved: &SensitivityParameter) -> Option<f64> {
     let system = &model.system;
     let mut values = system.layout.values();
@@ -217,8 +230,9 @@ fn inward(model: &CompiledModel, moved: &SensitivityParameter) -> Option<f64> {
     if below { Some(1.0) } else { above.then_some(-1.0) }
 }
 
-/// The derivative of the wanted variables along a change of parameters: central differences, and at a bound of the
-/// parameters, where runs on one side fail, those of second order on the other.
+/// The derivative of the wanted variables along a change of parameters, one column for each variable.
+///
+/// Central differences; where the runs on one side fail, as at a bound, one-sided ones of second order.
 fn along(
     model: &CompiledModel,
     settings: &Settings,
@@ -239,7 +253,7 @@ fn along(
     Ok(columns)
 }
 
-/// The sum of runs with these weights; `None` where they have different rows.
+/// The weighted sum of runs; `None` where they have different numbers of rows.
 fn combine(runs: &[(&Trajectory, f64)]) -> Option<Vec<Vec<f64>>> {
     let first = runs.first()?.0;
     runs.iter().all(|(run, _)| run.times.len() == first.times.len()).then_some(())?;
@@ -247,7 +261,7 @@ fn combine(runs: &[(&Trajectory, f64)]) -> Option<Vec<Vec<f64>>> {
     Some((0..first.columns.len()).map(|v| (0..first.times.len()).map(|row| cell(v, row)).collect()).collect())
 }
 
-/// Compares with the difference over one step, in which each parameter takes its share.
+/// Checks over one step, of which each parameter takes its share. `Err` says why the check failed.
 fn agrees_over(
     model: &CompiledModel,
     settings: &Settings,
@@ -270,7 +284,7 @@ fn agrees_over(
         let most = (0..rows).map(|row| sum(row).abs()).fold(0.0, f64::max);
         let size = plain.columns[v].iter().fold(0.0f64, |m, x| m.max(x.abs()));
         let apart = |row: &usize| (differences[v][*row] - sum(*row)).abs() > AGREE * most + 1e-6 * size;
-        // a row between the moved times of an event tells nothing
+        // Between the two times at which an event happens, a difference quotient jumps: such rows say nothing.
         if (0..rows).filter(apart).count() > (rows as f64 * BETWEEN).ceil() as usize {
             let name = &model.flat.variables[settings.wanted[v].index()].name;
             return Err(format!("`{name}` does not follow its derivatives"));
@@ -279,6 +293,7 @@ fn agrees_over(
     Ok(())
 }
 
+/// For each parameter its columns by central differences; all parameters in parallel.
 fn by_differences(
     model: &CompiledModel,
     settings: &Settings,
@@ -292,6 +307,7 @@ fn by_differences(
     moved.par_iter().map(by).collect()
 }
 
+/// A run with some parameters changed; the message of its error where it fails.
 fn run(
     model: &CompiledModel,
     settings: &Settings,
@@ -312,9 +328,10 @@ fn run(
 }
 
 impl Sensitivity {
-    /// How much a variable moves with a parameter: the root mean square over the rows, over the variable's range (or
-    /// its size, where it does not vary). A change of the parameter by 1 % moves the variable by this many per cent of
-    /// it.
+    /// How strongly a variable depends on a parameter: root mean square of the sensitivity over the range of the
+    /// variable (or its size, where it is constant).
+    ///
+    /// A change of the parameter by 1 % changes the variable by this many per cent of its range.
     pub fn weight(&self, parameter: usize, variable: usize) -> f64 {
         let moved = &self.columns[parameter][variable];
         let plain = &self.plain.columns[variable];
@@ -326,7 +343,7 @@ impl Sensitivity {
         if scale > 0.0 { rms / scale } else { 0.0 }
     }
 
-    /// Parameters by the sum of their weights over all variables, strongest first.
+    /// Indices of the parameters by the sum of their weights over all variables, largest first.
     pub fn ranking(&self) -> Vec<usize> {
         let sum = |p: usize| (0..self.plain.columns.len()).map(|v| self.weight(p, v)).sum::<f64>();
         let mut order: Vec<(usize, f64)> = (0..self.parameters.len()).map(|p| (p, sum(p))).collect();

@@ -1,4 +1,7 @@
-//! What a [`Simulation`] can be asked beyond a run.
+//! Analyses as methods of a compiled [`Simulation`]: states, linear models, operating points and sensitivities.
+//!
+//! The trait [`Analyze`] is the interface for Rust; the Python package uses it too. Names enter as texts and errors
+//! leave as [`Error`] with messages for users.
 
 use super::linear::{self, InputOutputSelection, LinearizationSetup, StateSpace};
 use super::sensitivity::{Sensitivity, SensitivityParameter, TOLERANCE, sensitivity};
@@ -13,7 +16,7 @@ use bramah_syntax::diag::{Code, Diagnostic, Error};
 use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
 
-/// What a [`Simulation`] can be asked beyond a run: import the trait, and call these as methods.
+/// Analyses of a [`Simulation`]: import the trait and call these as methods.
 pub trait Analyze {
     /// The state of a run at a time in seconds, or at its start.
     ///
@@ -43,18 +46,17 @@ pub trait Analyze {
     /// `E023` or `E903` for a name that does not fit, `E504` where the model has no derivatives.
     fn linearize(&self, at: &State, inputs: &[&str], outputs: &[&str]) -> Result<StateSpace, Error>;
 
-    /// The steady state reached from a state: where no rate is left that anything depends on.
+    /// The operating point reached from a state: all rates vanish that anything depends on.
     ///
     /// # Errors
-    /// `E501` where the search comes to no rest.
+    /// `E501` where no operating point is found.
     fn steady(&self, from: &State) -> Result<State, Error>;
 
-    /// How the trajectories of the continuous variables that the simulation records move with parameters, each by its
-    /// own size.
+    /// The sensitivities of the recorded continuous variables to parameters, each by the parameter's own size.
     ///
     /// # Errors
-    /// `E023` for a name that is no parameter; what the run said that failed; `E903` where inputs are given, for such
-    /// runs are not differentiated.
+    /// `E023` for a name that is no parameter; the message of a run that failed; `E903` where inputs are given, because
+    /// such runs are not differentiated.
     fn sensitivity(&self, parameters: &[&str]) -> Result<Sensitivity, Error>;
 }
 
@@ -107,7 +109,7 @@ impl Analyze for Simulation {
     }
 }
 
-/// The model with the values that were set in its equations: a linear model is made of these.
+/// The model with the values that were set compiled into its equations, because linearisation reads them there.
 fn as_set(simulation: &Simulation) -> Result<Cow<'_, CompiledModel>, Error> {
     match simulation.run_settings().parameters.as_slice() {
         [] => Ok(Cow::Borrowed(simulation.model())),
@@ -117,6 +119,7 @@ fn as_set(simulation: &Simulation) -> Result<Cow<'_, CompiledModel>, Error> {
     }
 }
 
+/// The model prepared for linearisation with these inputs and outputs.
 fn chosen(
     simulation: &Simulation,
     model: &CompiledModel,
@@ -128,6 +131,7 @@ fn chosen(
     LinearizationSetup::new(&model.flat, &choice, &[]).map_err(|diagnostics| simulation.errors(diagnostics))
 }
 
+/// A Real parameter by name, with its value and size.
 fn moved(simulation: &Simulation, name: &str) -> Result<SensitivityParameter, Error> {
     let variable: VarId = simulation.variable(name)?;
     let declared = &simulation.model().flat.variables[variable.index()];

@@ -1,7 +1,11 @@
-//! Steady states: where all rates vanish that anything depends on.
+//! Operating points: states in which all rates vanish that anything depends on.
 //!
-//! Pseudo-transient continuation: implicit Euler steps that grow as the rates fall, and so become Newton's method.
-//! Source: C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508.
+//! A prepared model ([`LinearizationSetup`]) and a state of a run enter; a [`SteadyState`] leaves, or a model state at
+//! rest ([`rest`]). The commands `bramah steady`, `linearize --steady` and `partition` call it.
+//!
+//! The search is pseudo-transient continuation: implicit Euler steps that grow as the rates fall, and so approach
+//! Newton's method. Source: C. T. Kelley, D. E. Keyes, SIAM J. Numer. Anal. 35 (1998) 508. States that nothing depends
+//! on, such as the angle of a turning shaft, need not rest.
 
 use super::linear::LinearizationSetup;
 use super::local::{LocalError, LocalEvaluator};
@@ -15,38 +19,38 @@ use bramah_syntax::diag::{Code, Diagnostic};
 use nalgebra::{DMatrix, DVector};
 use std::sync::atomic::AtomicBool;
 
-/// A steady state.
+/// An operating point.
 #[derive(Clone, Debug)]
 pub struct SteadyState {
-    /// Values of the states, in the order of the plan; those that nothing depends on are where they were.
+    /// Values of the states, in the order of the plan. Idle states keep the values from which the search started.
     pub x: Vec<f64>,
-    /// The largest rate left, over the state's usual size, in 1/s.
+    /// The largest remaining rate, over the nominal value of its state, in 1/s.
     pub rest: f64,
-    /// States that move on without effect on others, such as the angle of a shaft that turns; of angles joined by
-    /// springs one that stands for all.
+    /// States that may move on because nothing else depends on them, such as the angle of a turning shaft. Of angles
+    /// that are joined by springs one stands for all.
     pub idle: Vec<usize>,
-    /// Steps taken.
+    /// Steps of the search.
     pub steps: usize,
 }
 
-/// Why there is none.
+/// Why no operating point was found.
 #[derive(Clone, Debug, thiserror::Error)]
 pub enum SteadyStateError {
-    /// The equations have no solution where the search led.
+    /// The equations have no solution at a point of the search.
     #[error("{0}")]
     Local(#[from] LocalError),
-    /// The search did not come to rest; the state whose rate stays largest and that rate over its usual size.
+    /// The search ended before all rates vanished.
     #[error("the search did not come to rest")]
     Restless {
-        /// Index of the state.
+        /// Index of the state with the largest remaining rate.
         state: usize,
-        /// Rate over usual size, in 1/s.
+        /// That rate over the nominal value of the state, in 1/s.
         rate: f64,
     },
 }
 
 impl SteadyStateError {
-    /// What a user reads.
+    /// The diagnostic for a user, with the name of the state.
     pub fn said(&self, chosen: &LinearizationSetup) -> Diagnostic {
         let d = Diagnostic::new(Code::InitialFailed, format!("no steady state was found: {self}"));
         match self {
@@ -63,19 +67,21 @@ impl SteadyStateError {
     }
 }
 
-/// Rates below this part of a state's usual size and second count as zero.
+/// A rate below this, over the nominal value of its state, counts as zero; in 1/s.
 const REST: f64 = 1e-9;
-/// Most steps.
+/// Largest number of steps.
 const STEPS: usize = 400;
 
-/// Parts of the experiment's length after which a search that led nowhere is begun again.
+/// Shares of the experiment's length after which a failed search starts again.
 const LATER: [f64; 3] = [0.01, 0.1, 1.0];
 
-/// A state of the model at rest, reached from a state. Where the search from there comes to no rest, as between valves
-/// that open and close, from where a run from there leads.
+/// An operating point as a state of the model.
+///
+/// When the search from `state` fails, as between valves that open and close on the way, the model runs for 1, 10 and
+/// 100 % of the experiment's length, and the search starts again from there.
 ///
 /// # Errors
-/// [`SteadyStateError`].
+/// [`SteadyStateError`] of the first search.
 pub fn rest(
     model: &CompiledModel,
     chosen: &LinearizationSetup,
@@ -83,6 +89,7 @@ pub fn rest(
     interrupt: &AtomicBool,
 ) -> Result<State, SteadyStateError> {
     let from = |at: &State| steady(chosen, at).map(|(found, _)| put(chosen, &found.x, at.clone()));
+    // Without a solution of the equations a run would not help either.
     let why = match from(state) {
         Err(why @ SteadyStateError::Restless { .. }) => why,
         other => return other,
@@ -92,6 +99,7 @@ pub fn rest(
     for part in LATER {
         let length = part * (experiment.stop_time - experiment.start_time);
         let Ok((_, after)) = run_from(model, chosen, &at, length, &[], interrupt) else { break };
+        // The time stays that of the operating point, and with it what the sources command.
         at = State { time: state.time, ..after };
         if let Ok(found) = from(&at) {
             return Ok(found);
@@ -100,7 +108,7 @@ pub fn rest(
     Err(why)
 }
 
-/// A state of the model with these values of its states.
+/// A state of the model with its states set to `x`.
 fn put(chosen: &LinearizationSetup, x: &[f64], mut state: State) -> State {
     for (v, &x) in chosen.plan.state_variables().zip(x) {
         state.values[v.index()] = x;
@@ -108,7 +116,9 @@ fn put(chosen: &LinearizationSetup, x: &[f64], mut state: State) -> State {
     state
 }
 
-/// A run from a state, with the values of the raised parameters in it; two rows.
+/// Runs the model from a state for `length` seconds, with the values of the raised parameters in that state.
+///
+/// Returns two rows, start and end, and the state at the end.
 ///
 /// # Errors
 /// The diagnostics of a run that did not reach its end.
@@ -137,7 +147,7 @@ pub fn run_from(
     if run.end.is_success() { Ok((rows, run.state)) } else { Err(run.diagnostics) }
 }
 
-/// The steady state reached from a state of the model, with its inputs and parameters.
+/// Finds an operating point from a state of the model, with its inputs and parameters.
 ///
 /// # Errors
 /// [`SteadyStateError`].
@@ -146,7 +156,8 @@ pub fn steady(chosen: &LinearizationSetup, from: &State) -> Result<(SteadyState,
     let mut local = chosen.at(from)?;
     let x = local.state();
     let found = search(&mut local, (from.time, &theta, &u), &x, &[]).or_else(|why| {
-        // shafts joined by springs turn together: only then, for a search with less to hold still may end elsewhere
+        // Angles of shafts joined by springs may move on together. A search that allows this holds fewer states fixed
+        // and may find another operating point, so it runs only when the first one has failed.
         let places = places(chosen);
         if places.is_empty() || !matches!(why, SteadyStateError::Restless { .. }) {
             return Err(why);
@@ -156,7 +167,7 @@ pub fn steady(chosen: &LinearizationSetup, from: &State) -> Result<(SteadyState,
     Ok((found, local))
 }
 
-/// States that are angles or positions, by their units.
+/// Indices of the states that are angles or positions, recognised by their units.
 fn places(chosen: &LinearizationSetup) -> Vec<usize> {
     let variables = &chosen.plan.system.dae.variables;
     let is_place = |unit: &str| ["rad", "m"].iter().any(|place| same_kind(unit, place));
@@ -164,12 +175,12 @@ fn places(chosen: &LinearizationSetup) -> Vec<usize> {
     units.enumerate().filter(|(_, unit)| is_place(unit)).map(|(k, _)| k).collect()
 }
 
-/// Units that can be converted into each other; those of angles are no plain numbers.
+/// Whether two units convert into each other. An angle is no plain number here.
 fn same_kind(a: &str, b: &str) -> bool {
     matches!((MeasurementUnit::parse(a), MeasurementUnit::parse(b)), (Ok(a), Ok(b)) if (a.dimension, a.angle) == (b.dimension, b.angle))
 }
 
-/// The steady state of `local` reached from `x`.
+/// Finds an operating point of `local` from `x`, at a time with parameters `theta` and inputs `u`.
 ///
 /// # Errors
 /// [`SteadyStateError`].
@@ -183,23 +194,24 @@ pub fn settle(
     search(local, (time, theta, u), &x, &[])
 }
 
-/// A steady state that others are reached from.
+/// An operating point from which others can be reached.
 #[derive(Clone, Debug)]
 pub struct OperatingPoint {
     /// Its states, in the order of the plan.
     pub x: Vec<f64>,
-    /// A state of the model, for what is given there: time, parameters and inputs.
+    /// A state of the model that holds its time, parameters and inputs.
     pub given: State,
 }
 
-/// A way that is too long at once is halved so often: to a thirty-second of it.
+/// How often a change that is too large is halved: down to a thirty-second of it.
 const HALVINGS: u32 = 5;
 
-/// The steady state with other values of parameters and inputs: reached at once, or over the middle of the way. Outputs
-/// of `local` are then those of this state.
+/// Finds the operating point with other values of parameters and inputs, directly or over points between.
+///
+/// The outputs of `local` are then those of the new point.
 ///
 /// # Errors
-/// [`SteadyStateError`], as it was met first.
+/// The [`SteadyStateError`] of the direct attempt.
 pub fn reach(
     chosen: &LinearizationSetup,
     local: &mut LocalEvaluator,
@@ -209,6 +221,7 @@ pub fn reach(
     go(chosen, local, from, target, HALVINGS)
 }
 
+/// The recursion of [`reach`], with the number of halvings left.
 fn go(
     chosen: &LinearizationSetup,
     local: &mut LocalEvaluator,
@@ -226,12 +239,12 @@ fn go(
     };
     let middle = |&(v, value): &(VarId, f64)| (v, 0.5 * (from.given.values[v.index()] + value));
     let middle: Vec<(VarId, f64)> = target.iter().map(middle).collect();
+    // The first half may be halved again; then the second half starts from its end.
     let half = go(chosen, local, from, &middle, halvings - 1).map_err(|_| why)?;
     go(chosen, local, &half, target, halvings - 1)
 }
 
-/// The steady state of `local` at a time with its parameters and inputs, reached from `x`. States among `places` may
-/// move on together where nothing depends on this motion.
+/// The search itself. States among `places` may move on together where nothing depends on this motion.
 fn search(
     local: &mut LocalEvaluator,
     (time, theta, u): (f64, &[f64], &[f64]),
@@ -244,6 +257,7 @@ fn search(
     local.linearize(time, &x, theta, u)?;
     let mut at = ScaledLinearization::new(local, &nominals, places);
     let mut size = at.norm();
+    // A short first step follows the transient; it grows at once where the rates fall.
     let mut step = 1e-3;
     for count in 0..STEPS {
         if size <= REST {
@@ -251,7 +265,8 @@ fn search(
         }
         let next = at.euler(&x, &nominals, step);
         let found = next.filter(|x| x.iter().all(|v| v.is_finite())).filter(|next| {
-            // a step over several times the usual sizes leads nowhere known
+            // A step over several nominal values leaves the range in which the Jacobian says anything. Very short steps
+            // are taken anyway, so that the search does not stall.
             let far = (0..n).any(|i| (next[i] - x[i]).abs() > 3.0 * nominals[i].max(x[i].abs()));
             !far || step < 1e-9
         });
@@ -259,11 +274,12 @@ fn search(
         let Some(next) = taken else {
             step *= 0.2;
             local.linearize(time, &x, theta, u)?;
+            // The rejected point is undone, and the shorter step uses the Jacobian at the last accepted one.
             continue;
         };
         at = ScaledLinearization::new(local, &nominals, places);
         let now = at.norm();
-        // rates may rise on the way, as they do in a run
+        // Switched evolution relaxation: the step grows as the rates fall. They may rise on the way, as in a run.
         step = (step * (size / now.max(1e-30)).clamp(0.2, 5.0) * 1.5).clamp(1e-12, 1e15);
         (x, size) = (next, now);
     }
@@ -272,14 +288,18 @@ fn search(
     Err(SteadyStateError::Restless { state, rate })
 }
 
-/// Rates and their derivatives in units of the states' usual sizes, and the states that stand for themselves alone.
+/// Rates and Jacobian in units of the states' nominal values.
 struct ScaledLinearization {
+    /// d x'/d x, n by n.
     a: DMatrix<f64>,
+    /// The rates, in 1/s.
     rates: Vec<f64>,
+    /// States that are left out of the search.
     idle: Vec<usize>,
 }
 
 impl ScaledLinearization {
+    /// Scales the linearisation of `local` and finds its idle states.
     fn new(local: &LocalEvaluator, nominals: &[f64], places: &[usize]) -> Self {
         let n = nominals.len();
         let a = DMatrix::from_fn(n, n, |i, j| local.linear.a[(i, j)] * nominals[j] / nominals[i]);
@@ -287,7 +307,7 @@ impl ScaledLinearization {
         let mut scaled = ScaledLinearization { idle: idle(&a), a, rates };
         let joined: Vec<usize> = places.iter().copied().filter(|p| !scaled.idle.contains(p)).collect();
         for (leader, others) in together(&scaled.a, &joined) {
-            // the others are counted from where the leader is: on what the leader itself does nothing depends any more
+            // The others are counted relative to the leader; on the leader itself nothing depends any more.
             for (other, ratio) in others {
                 scaled.rates[other] -= ratio * scaled.rates[leader];
                 let row = scaled.a.row(other) - scaled.a.row(leader) * ratio;
@@ -299,13 +319,14 @@ impl ScaledLinearization {
         scaled
     }
 
-    /// The largest rate over the usual size of its state.
+    /// The largest rate of a state that is not idle, in 1/s.
     fn norm(&self) -> f64 {
         let rates = self.rates.iter().enumerate().filter(|(i, _)| !self.idle.contains(i));
         rates.map(|(_, r)| r.abs()).fold(0.0, f64::max)
     }
 
-    /// One implicit Euler step; idle states stay.
+    /// The states after one implicit Euler step of `step` seconds. Idle states keep their values. `None` where the
+    /// matrix is singular.
     fn euler(&self, x: &[f64], nominals: &[f64], step: f64) -> Option<Vec<f64>> {
         let n = x.len();
         let matrix = DMatrix::from_fn(n, n, |i, j| {
@@ -319,12 +340,15 @@ impl ScaledLinearization {
     }
 }
 
-/// What is left of terms that cancel, as a part of them.
+/// Terms cancel when their sum is below this share of them.
 const CANCEL: f64 = 1e-9;
 
-/// Groups of these states that can move on together with no effect on any rate, as the angles of shafts joined by
-/// springs and gears do: one of each group, and the others with how fast they move for it.
+/// Groups among `states` that can move on together without an effect on any rate.
+///
+/// Such are the angles of shafts that are joined by springs and gears: a vector in the null space of their columns of
+/// `a`. Each group has one leader, and the others with their rates relative to the leader's.
 fn together(a: &DMatrix<f64>, states: &[usize]) -> Vec<(usize, Vec<(usize, f64)>)> {
+    // Rows are scaled, so that one tolerance fits all of them.
     let mut m = a.select_columns(states);
     for mut row in m.row_iter_mut() {
         let most = row.amax();
@@ -333,13 +357,14 @@ fn together(a: &DMatrix<f64>, states: &[usize]) -> Vec<(usize, Vec<(usize, f64)>
         }
     }
     let whole = m.clone();
-    // by elimination, so that groups that have nothing to do with each other stay apart
+    // Gauss-Jordan elimination, so that independent groups stay apart.
     let mut pivots: Vec<(usize, usize)> = Vec::new();
     let mut leaders = Vec::new();
     for column in 0..states.len() {
         let free = (0..m.nrows()).filter(|r| pivots.iter().all(|p| p.0 != *r));
         let Some(row) = free.max_by(|x, y| m[(*x, column)].abs().total_cmp(&m[(*y, column)].abs())) else { break };
         if m[(row, column)].abs() <= CANCEL {
+            // A column without a pivot depends on the columns before it: it spans one vector of the null space.
             leaders.push(column);
             continue;
         }
@@ -354,6 +379,7 @@ fn together(a: &DMatrix<f64>, states: &[usize]) -> Vec<(usize, Vec<(usize, f64)>
     let group = |&leader: &usize| {
         let others = pivots.iter().map(|&(row, column)| (column, -m[(row, leader)]));
         let others: Vec<(usize, f64)> = others.filter(|o| o.1.abs() > CANCEL).collect();
+        // The original rows confirm what elimination with its rounding found.
         let cancels = whole.row_iter().all(|row| {
             let terms = || others.iter().map(|&(c, ratio)| row[c] * ratio).chain([row[leader]]);
             terms().sum::<f64>().abs() <= CANCEL * terms().map(f64::abs).sum::<f64>()
@@ -363,10 +389,12 @@ fn together(a: &DMatrix<f64>, states: &[usize]) -> Vec<(usize, Vec<(usize, f64)>
     leaders.iter().filter_map(group).collect()
 }
 
-/// The states that move on where all motion is at constant rates, `Some` of nothing at rest; `None` where a rate
-/// changes with the motion, or moves what others depend on.
+/// The states that move on where all motion is at constant rates; empty at rest.
+///
+/// `None` where the motion changes a rate, which is no steady state.
 pub fn moving(a: &DMatrix<f64>, rates: &[f64], nominals: &[f64]) -> Option<Vec<usize>> {
     let moving: Vec<usize> = (0..rates.len()).filter(|&k| rates[k].abs() > MOVES * nominals[k]).collect();
+    // x'' = A x' must vanish in every row.
     let constant = a.row_iter().all(|row| {
         let terms = || moving.iter().map(|&k| row[k] * rates[k]);
         terms().sum::<f64>().abs() <= MOVES * terms().map(f64::abs).sum::<f64>()
@@ -374,10 +402,10 @@ pub fn moving(a: &DMatrix<f64>, rates: &[f64], nominals: &[f64]) -> Option<Vec<u
     constant.then_some(moving)
 }
 
-/// Rates above this part of a state's usual size and second are motion, and no rest of a search.
+/// A rate above this, over the nominal value of its state, counts as motion; in 1/s.
 const MOVES: f64 = 1e-4;
 
-/// States that no rate depends on, but those of other such states.
+/// States on which no rate depends, or only rates of other such states.
 pub fn idle(a: &DMatrix<f64>) -> Vec<usize> {
     let n = a.nrows();
     let mut idle: Vec<usize> = Vec::new();

@@ -1,5 +1,9 @@
-//! The model with its parameters made states that stand still: the sensitivities of a run to parameters are then those
-//! to its start, and the integrator carries them along, right across events.
+//! Runs a model together with its sensitivities to parameters.
+//!
+//! A flat model and parameters enter; a [`TangentModel`] leaves, whose system the solver integrates with a
+//! [`TangentRequest`]. Parameters are lifted to constant states, so that sensitivities to parameters are sensitivities
+//! to start values, which the integrator carries across events. `sensitivity` and the output error of `identify` use
+//! it.
 
 use super::lift;
 use bramah_expr::VarId;
@@ -10,13 +14,14 @@ use bramah_solve::{Control, End, RecordedInput, Settings, State, TangentRequest,
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// A model ready to run with sensitivities to some of its parameters.
+/// A model that can run with sensitivities to some of its parameters.
 #[derive(Clone, Debug)]
 pub struct TangentModel {
-    /// The system; variables of the model keep their numbers.
+    /// The lifted system; variables of the model keep their ids.
     pub system: Arc<ExecutableSystem>,
-    /// Per parameter, what one unit of its direction means.
+    /// One unit of each parameter's direction, in the parameter's unit.
     sizes: Vec<f64>,
+    /// The lifted parameters.
     raised: Vec<lift::AugmentedState>,
 }
 
@@ -24,15 +29,17 @@ pub struct TangentModel {
 const STEP: f64 = 1e-4;
 
 impl TangentModel {
-    /// For parameters, each with the size of a unit of its direction.
+    /// Lifts parameters, each given with the size of its direction, and analyses the equations.
     ///
     /// # Errors
-    /// In words, why runs cannot carry the sensitivities along.
+    /// The reason, in words, why sensitivities cannot be integrated.
     pub fn new(flat: &FlatModel, parameters: &[(VarId, f64)]) -> Result<TangentModel, String> {
         let variables: Vec<VarId> = parameters.iter().map(|p| p.0).collect();
+        // A parameter that the initial equations determine has a sensitivity of its own, which is not integrated.
         if let Some(v) = flat.variables.iter().find(|v| v.variability == Variability::Parameter && !v.fixed) {
             return Err(format!("`{}` is found at the start", v.name));
         }
+        // Sampled values jump with what they sample; only the continuous part is differentiated.
         if sampled(flat, &variables) {
             return Err("sampled values depend on what moves".to_owned());
         }
@@ -43,15 +50,18 @@ impl TangentModel {
         if !dae.delays.is_empty() {
             return Err("what is delayed is not carried along".to_owned());
         }
+        // The directions refer to states alone, so conserved quantities are not made unknowns of their own.
         let system = Arc::new(lower(Arc::new(dae), &LoweringOptions { conserve: false, ..LoweringOptions::default() }));
         Ok(TangentModel { system, sizes: parameters.iter().map(|p| p.1).collect(), raised: lifted.parameters })
     }
 
-    /// What a run with these settings carries along: per parameter the derivatives of its start, which are differences
-    /// of starts. Parameters that the settings give do not follow others.
+    /// The directions of a run that starts at the model's own start: for each parameter the derivatives of all initial
+    /// states, by differences of starts.
+    ///
+    /// A parameter whose value the settings give no longer follows others.
     ///
     /// # Errors
-    /// In words, when there is no start beside the given one.
+    /// The reason, in words, why there is no start with a parameter moved.
     pub fn starts(&self, settings: &Settings, inputs: &[RecordedInput]) -> Result<TangentRequest, String> {
         let at = Settings { stop_time: settings.start_time, interval: 0.0, ..settings.clone() };
         let base = self.start(&at, inputs, None)?;
@@ -61,7 +71,7 @@ impl TangentModel {
         Ok(TangentRequest { still, starts: directions?, controlled: false })
     }
 
-    /// What a run carries along that starts at given states: the parameters alone move.
+    /// The directions of a run that starts at given states: each parameter moves alone.
     pub fn inside(&self) -> TangentRequest {
         let raised = self.raised.iter().zip(&self.sizes);
         TangentRequest {
@@ -71,6 +81,7 @@ impl TangentModel {
         }
     }
 
+    /// The derivatives of all initial states by parameter `k`, one-sided where there is a start on one side only.
     fn direction(
         &self,
         settings: &Settings,
@@ -92,10 +103,10 @@ impl TangentModel {
         Ok(states.filter(|(_, by)| *by != 0.0).collect())
     }
 
-    /// The state at the start, one parameter perhaps elsewhere.
+    /// The state at the start, with one parameter moved to another value.
     ///
     /// # Errors
-    /// In words, when there is none.
+    /// When the initial equations have no solution.
     pub fn start(
         &self,
         settings: &Settings,
@@ -113,13 +124,13 @@ impl TangentModel {
         }
     }
 
-    /// Whether a variable is integrated, so that a run may start with another value of it.
+    /// Whether a variable is a state of the system, so that a run may start at another value of it.
     pub fn is_state(&self, v: VarId) -> bool {
         self.system.dae.states.contains(&v)
     }
 }
 
-/// Whether a real value set by `when` depends on these parameters or on anything that moves between events.
+/// Whether a Real value assigned in a `when` clause depends on these parameters or on a continuous variable.
 fn sampled(flat: &FlatModel, parameters: &[VarId]) -> bool {
     let followers: Vec<VarId> = lift::reading(flat, parameters).into_iter().map(|f| f.0).collect();
     let mut moves: Vec<bool> = flat

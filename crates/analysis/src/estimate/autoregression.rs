@@ -1,19 +1,25 @@
-//! Autoregressions of growing order by their partial autocorrelations (Levinson and Durbin; Box, Jenkins, Time Series
+//! Autoregressive models of growing order by the Levinson-Durbin recursion (G. E. P. Box, G. M. Jenkins, Time Series
 //! Analysis, 1970, ch. 3).
+//!
+//! Series of errors enter; partial autocorrelations and prediction variances of all orders leave. `spread` chooses an
+//! order among them.
 
-/// An autoregression of one order.
+/// The autoregressive model of one order.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AutoregressionOrder {
-    /// The last partial autocorrelation.
+    /// Its last partial autocorrelation.
     pub partial: f64,
-    /// Variance of what the values before do not tell.
+    /// Variance of the prediction error.
     pub power: f64,
 }
 
-/// Mean square of all series, and the autoregressions of the orders 1 to `most` that they share; fewer where nothing is
-/// left to tell. Partial autocorrelations stay within `limit`.
+/// Mean square of all series, and the models of orders 1 to `most` that they share.
+///
+/// There are fewer where an order predicts without error. Partial autocorrelations are limited to `limit` in size. The
+/// mean is not removed.
 pub fn orders<S: AsRef<[f64]>>(series: &[S], most: usize, limit: f64) -> (f64, Vec<AutoregressionOrder>) {
     let rows: usize = series.iter().map(|s| s.as_ref().len()).sum();
+    // Products within a series only: its end and the start of the next are not neighbours.
     let product = |lag: usize| {
         let one = |s: &S| s.as_ref().iter().zip(s.as_ref().iter().skip(lag)).map(|(a, b)| a * b).sum::<f64>();
         series.iter().map(one).sum::<f64>() / rows.max(1) as f64
@@ -25,6 +31,7 @@ pub fn orders<S: AsRef<[f64]>>(series: &[S], most: usize, limit: f64) -> (f64, V
         if power.is_nan() || power <= 0.0 {
             break;
         }
+        // Levinson's recursion: the new partial autocorrelation is what the lower order leaves unexplained at this lag.
         let predicted: f64 = coefficients.iter().enumerate().map(|(i, a)| a * correlations[order - 1 - i]).sum();
         let partial = ((correlations[order] - predicted) / power).clamp(-limit, limit);
         coefficients = longer(&coefficients, partial);
@@ -34,7 +41,7 @@ pub fn orders<S: AsRef<[f64]>>(series: &[S], most: usize, limit: f64) -> (f64, V
     (correlations[0], found)
 }
 
-/// The coefficients of the next order, with its partial autocorrelation.
+/// The coefficients of the next order from those of the last one and its partial autocorrelation.
 pub fn longer(coefficients: &[f64], partial: f64) -> Vec<f64> {
     let old = coefficients.iter().zip(coefficients.iter().rev());
     old.map(|(a, b)| a - partial * b).chain([partial]).collect()

@@ -1,11 +1,16 @@
-//! How many samples in a row say the same.
+//! Correlation times: over how many samples errors are correlated with each other.
+//!
+//! Errors of a signal enter; a number of samples leaves, by which weights and significance tests divide the number of
+//! samples.
 
-/// Autocorrelation below which errors count as independent; the sum over larger lags would be noise.
+/// Autocorrelations below this count as zero; summed over many lags they would be noise.
 const UNCORRELATED: f64 = 0.05;
 
-/// Integrated autocorrelation time in samples, at least 1: 1 + 2 sum rho_k up to the first rho_k below
-/// `UNCORRELATED` (Sokal, Monte Carlo methods in statistical mechanics, 1997, 3). N samples count as N over this many
-/// independent ones. The mean is not taken out: a constant error is an error. Samples without a value are left out.
+/// The integrated autocorrelation time in samples, at least 1.
+///
+/// It is 1 + 2 sum rho_k up to the first rho_k below `UNCORRELATED` (Sokal, Monte Carlo methods in statistical
+/// mechanics, 1997, 3). N samples carry the information of N over this many independent ones. The mean is not removed,
+/// because a constant error is an error. NaN is left out.
 pub fn time(errors: &[f64]) -> f64 {
     let known: Vec<f64> = errors.iter().copied().filter(|e| e.is_finite()).collect();
     let power: f64 = known.iter().map(|e| e * e).sum();
@@ -17,7 +22,7 @@ pub fn time(errors: &[f64]) -> f64 {
     1.0 + 2.0 * correlated.sum::<f64>()
 }
 
-/// The same of a signal along several recordings: the mean over its samples.
+/// The correlation time of a signal in several recordings: the mean, weighted by their samples; 1 without samples.
 pub fn mean_time<'a>(recordings: impl Iterator<Item = &'a [f64]>) -> f64 {
     let (mut sum, mut samples) = (0.0, 0.0);
     for errors in recordings {

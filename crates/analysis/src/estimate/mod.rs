@@ -1,6 +1,8 @@
-//! What every estimate from recordings stands on: over how many samples errors resemble each other, and how far an
-//! estimate may be off because of them. [`crate::identify`] and the diagnosis weigh errors and give standard deviations
-//! by these rules alone, so that the same question has the same answer.
+//! The uncertainty of estimates from recordings with correlated errors.
+//!
+//! Residuals and Jacobian of a weighted least-squares fit enter; covariance and degrees of freedom of the unknowns
+//! leave ([`spread()`]), or the correlation time of errors ([`correlation`]). [`crate::identify`] and the diagnosis in
+//! `crates/gap` both use these functions, so that the same data give the same standard deviations in both.
 
 mod autoregression;
 pub mod correlation;

@@ -1,16 +1,19 @@
-//! Least values of smooth functions of a few variables, by differences alone.
+//! Minimisation of smooth functions of a few variables, with derivatives by finite differences.
+//!
+//! A function and a start enter; the minimum, gradients or second derivatives leave. `spread` fits its models of errors
+//! with it.
 
 use nalgebra::{DMatrix, DVector};
 
-/// Most steps.
+/// Largest number of steps.
 const STEPS: usize = 100;
-/// A slope that is flat, per unit of the variables.
+/// The search ends when all slopes are below this.
 const FLAT: f64 = 1e-4;
 
-/// Searches from `start` for the least value of a function that may be infinite in places; differences over `step`.
+/// Minimises from `start`; differences use `step`. The function may be infinite in places.
 ///
-/// The inverse of the curvature is learned from the slopes seen (Broyden, Fletcher, Goldfarb, Shanno). Source:
-/// J. Nocedal, S. J. Wright, Numerical Optimization, 2006, algorithm 6.1.
+/// The inverse Hessian is updated by the BFGS formula. Source: J. Nocedal, S. J. Wright, Numerical Optimization, 2006,
+/// algorithm 6.1.
 pub fn descend(function: &mut dyn FnMut(&[f64]) -> f64, start: &[f64], step: f64) -> Vec<f64> {
     let n = start.len();
     let mut at = DVector::from_column_slice(start);
@@ -23,9 +26,11 @@ pub fn descend(function: &mut dyn FnMut(&[f64]) -> f64, start: &[f64], step: f64
         }
         let mut along = -(&inverse * &slope);
         if along.dot(&slope) >= 0.0 {
+            // Rounding has made the direction one of ascent: start again with steepest descent.
             inverse.fill_with_identity();
             along = -slope.clone();
         }
+        // No variable moves by more than 1, because the first Hessian is only a guess.
         along *= (1.0 / along.amax()).min(1.0);
         let Some((next, lower)) = shortened(function, &at, value, &along, along.dot(&slope)) else { break };
         let new = gradient(function, &next, step);
@@ -35,7 +40,9 @@ pub fn descend(function: &mut dyn FnMut(&[f64]) -> f64, start: &[f64], step: f64
     at.as_slice().to_vec()
 }
 
-/// The first of ever shorter steps that goes down enough.
+/// Backtracking line search: the first of ever shorter steps that satisfies Armijo's condition, with its value.
+///
+/// `fall` is the directional derivative. `None` where no step decreases the function enough.
 fn shortened(
     function: &mut dyn FnMut(&[f64]) -> f64,
     at: &DVector<f64>,
@@ -55,9 +62,11 @@ fn shortened(
     None
 }
 
+/// The BFGS update of the inverse Hessian from a step and the change of the gradient.
 fn learn(inverse: &mut DMatrix<f64>, moved: &DVector<f64>, turned: &DVector<f64>) {
     let product = moved.dot(turned);
     if product.is_nan() || product <= 1e-12 * moved.norm() * turned.norm() {
+        // Without positive curvature along the step the matrix would lose its definiteness.
         return;
     }
     let n = moved.len();
@@ -65,12 +74,14 @@ fn learn(inverse: &mut DMatrix<f64>, moved: &DVector<f64>, turned: &DVector<f64>
     *inverse = &left * &*inverse * left.transpose() + moved * moved.transpose() / product;
 }
 
+/// The point `at` with variable `j` changed.
 fn moved(at: &[f64], j: usize, by: f64) -> Vec<f64> {
     let mut next = at.to_vec();
     next[j] += by;
     next
 }
 
+/// The gradient by central differences.
 fn gradient(function: &mut dyn FnMut(&[f64]) -> f64, at: &DVector<f64>, step: f64) -> DVector<f64> {
     let one = |j: usize| {
         let (up, down) = (function(&moved(at.as_slice(), j, step)), function(&moved(at.as_slice(), j, -step)));
@@ -79,7 +90,7 @@ fn gradient(function: &mut dyn FnMut(&[f64]) -> f64, at: &DVector<f64>, step: f6
     DVector::from_iterator(at.len(), (0..at.len()).map(one))
 }
 
-/// Derivatives of several functions by central differences, one row a function.
+/// The Jacobian of several functions by central differences, one row for each function.
 pub fn slopes(functions: &mut dyn FnMut(&[f64]) -> DVector<f64>, at: &[f64], step: f64) -> DMatrix<f64> {
     let columns: Vec<DVector<f64>> = (0..at.len())
         .map(|j| (functions(&moved(at, j, step)) - functions(&moved(at, j, -step))) / (2.0 * step))
@@ -87,7 +98,7 @@ pub fn slopes(functions: &mut dyn FnMut(&[f64]) -> DVector<f64>, at: &[f64], ste
     if columns.is_empty() { DMatrix::zeros(functions(at).len(), 0) } else { DMatrix::from_columns(&columns) }
 }
 
-/// Second derivatives by differences.
+/// The Hessian by central differences.
 pub fn bend(function: &mut dyn FnMut(&[f64]) -> f64, at: &[f64], step: f64) -> DMatrix<f64> {
     let n = at.len();
     let mut out = DMatrix::zeros(n, n);

@@ -1,10 +1,13 @@
-//! The colour of errors: autoregressive models of what a fit leaves over, and what they say about the estimate.
+//! The covariance of a least-squares estimate whose errors are correlated in time.
 //!
-//! A fit takes from the errors what its parameters can follow, most of it slow, so that the autocorrelation of what is
-//! left over is too small. The models are therefore found by restricted maximum likelihood, which looks only at what no
-//! parameter could have taken. Sources: H. D. Patterson, R. Thompson, Biometrika 58 (1971) 545; the order by G.
-//! Schwarz, Annals of Statistics 6 (1978) 461; degrees of freedom by F. E. Satterthwaite, Biometrics Bulletin 2 (1946)
-//! 110.
+//! Jacobian and residual of a fit enter ([`LinearizedEstimate`]); an [`EstimateCovariance`] leaves. The errors of each
+//! signal get an autoregressive (AR) model, and the covariance is the sandwich (J'J)^-1 J'SJ (J'J)^-1 with the
+//! covariance S of these models.
+//!
+//! A fit absorbs slow errors into its parameters, so residuals are less correlated than errors. The models are
+//! therefore found by restricted maximum likelihood, which uses only what no parameter can absorb. Sources: H. D.
+//! Patterson, R. Thompson, Biometrika 58 (1971) 545; the order by G. Schwarz, Annals of Statistics 6 (1978) 461;
+//! degrees of freedom by F. E. Satterthwaite, Biometrics Bulletin 2 (1946) 110.
 
 use super::autoregression::{self, longer};
 use super::quasi_newton::{bend, descend, slopes};
@@ -23,44 +26,47 @@ pub struct ResidualSeries {
     pub rows: Range<usize>,
 }
 
-/// An estimate by weighed least squares with its sensitivities.
+/// A weighted least-squares estimate of n unknowns.
 #[derive(Clone, Copy, Debug)]
 pub struct LinearizedEstimate<'a> {
-    /// Derivatives of the residual by the unknowns. Rows of data come first, then what is known beforehand.
+    /// Derivatives of the residual, one column for each unknown. Rows of data come first, priors and conditions follow.
     pub jacobian: &'a DMatrix<f64>,
-    /// The residual: model minus measurement over the deviation by which it counts.
+    /// The residual: (model minus measurement) over the standard deviation used as weight.
     pub residual: &'a DVector<f64>,
-    /// The rows of data.
+    /// The rows of data, by recording and signal.
     pub series: &'a [ResidualSeries],
 }
 
 impl LinearizedEstimate<'_> {
-    /// Rows of data.
+    /// Number of rows of data.
     fn data(&self) -> usize {
         self.series.iter().map(|s| s.rows.end).max().unwrap_or(0)
     }
 }
 
-/// What the errors say about the unknowns of a fit.
+/// The covariance of the unknowns of a fit.
 pub struct EstimateCovariance<'a> {
-    /// Covariance of the unknowns.
+    /// n by n, corrected for correlated errors; infinite where the data carry no information.
     pub covariance: DMatrix<f64>,
-    /// What it would be if the errors were white and as large as they are weighed.
+    /// n by n, for white errors as large as their weights say: (J'J)^-1.
     pub plain: DMatrix<f64>,
-    /// The models of the errors; nothing where no model can be found.
+    /// The models of the errors; `None` where no data are left to find any.
     models: Option<NoiseModels<'a>>,
 }
 
-/// Models of the errors at their likeliest.
+/// Models of the errors at their maximum of likelihood.
 struct NoiseModels<'a> {
+    /// The errors and sensitivities of all signals.
     colour: ColouredNoise<'a>,
+    /// The models' parameters, signal after signal.
     at: Vec<f64>,
-    /// What keeps the information solvable.
+    /// The amount added to the diagonal of J'J.
     small: f64,
 }
 
 impl EstimateCovariance<'_> {
-    /// Per unknown the degrees of freedom of its variance: a white series has as many as samples, nearly.
+    /// For each unknown the degrees of freedom of its variance; infinite without models. For white errors it is about
+    /// the number of samples.
     pub fn degrees(&self) -> Vec<f64> {
         let Some(NoiseModels { colour, at, small }) = &self.models else {
             return vec![f64::INFINITY; self.plain.nrows()];
@@ -72,30 +78,31 @@ impl EstimateCovariance<'_> {
 
 /// Highest order of a model.
 const ORDER: usize = 12;
-/// Samples beyond what the unknowns can meet that tell at least something about the errors.
+/// Smallest number of samples beyond those that the unknowns can fit exactly.
 const LEFT_OVER: f64 = 0.5;
-/// Errors below this part of their deviation are no errors: exact data.
+/// A variance of weighted errors up to this is rounding: the data are exact.
 const NOTHING: f64 = 1e-12;
-/// Largest partial autocorrelation with which a model begins.
+/// Largest partial autocorrelation of the first guess.
 const NEARLY_ONE: f64 = 0.98;
-/// Step of the differences over the models' parameters, which are of the order of 1.
+/// Step of differences by the models' parameters, which are of the order of 1.
 const STEP: f64 = 1e-3;
 
-/// The covariance of an estimate by weighed least squares whose errors are coloured: the spread that the models of the
-/// errors say, between two inverses of the information.
+/// Computes the covariance of an estimate with correlated errors.
 pub fn spread(estimate: LinearizedEstimate<'_>) -> EstimateCovariance<'_> {
     let (jacobian, unknowns) = (estimate.jacobian, estimate.jacobian.ncols());
     let mut information = jacobian.tr_mul(jacobian);
     // the rows of data alone: conditions between pieces weigh much more
     let data = estimate.data();
     let largest = jacobian.rows(0, data).column_iter().map(|c| c.norm_squared()).fold(f64::MIN_POSITIVE, f64::max);
+    // Keeps the matrix invertible for unknowns without influence, which thus get a huge variance.
     let small = 1e-12 * largest;
     (0..unknowns).for_each(|j| information[(j, j)] += small);
     let nothing = || DMatrix::from_element(unknowns, unknowns, f64::INFINITY);
     let Some(plain) = information.cholesky().map(|c| c.inverse()) else {
         return EstimateCovariance { covariance: nothing(), plain: nothing(), models: None };
     };
-    // how many samples the unknowns alone can meet: with no more of them nothing tells how large their errors are
+    // The trace of the hat matrix: how many samples the unknowns alone can fit. Without more of them nothing is known
+    // about the size of the errors.
     let met = jacobian.rows(0, data).row_iter().map(|row| (row * &plain).dot(&row)).sum::<f64>();
     if data as f64 - met < LEFT_OVER {
         return EstimateCovariance { covariance: nothing(), plain, models: None };
@@ -107,8 +114,10 @@ pub fn spread(estimate: LinearizedEstimate<'_>) -> EstimateCovariance<'_> {
     EstimateCovariance { covariance, plain, models: Some(NoiseModels { colour, at, small }) }
 }
 
-/// Variances of the unknowns by how far recordings contradict each other, which no model of the errors within one says:
-/// the spread of their scores (Liang, Zeger, Biometrika 73, 1986). None where there is one recording.
+/// Variances of the unknowns from the contradictions between recordings, which no model within one recording sees.
+///
+/// It is the spread of the recordings' scores (K.-Y. Liang, S. L. Zeger, Biometrika 73 (1986) 13); zero for a single
+/// recording.
 fn between_recordings(estimate: LinearizedEstimate<'_>, plain: &DMatrix<f64>) -> DVector<f64> {
     let mut scores: BTreeMap<usize, DVector<f64>> = BTreeMap::new();
     for s in estimate.series {
@@ -129,7 +138,7 @@ fn between_recordings(estimate: LinearizedEstimate<'_>, plain: &DMatrix<f64>) ->
     variances
 }
 
-/// Widens a covariance so that no variance is below another one of the same unknown; correlations stay.
+/// Raises the variances of a covariance to at least `variances`; correlations stay the same.
 fn widen(covariance: &mut DMatrix<f64>, variances: &DVector<f64>) {
     let factor = |i: usize| (variances[i] / covariance[(i, i)].max(f64::MIN_POSITIVE)).sqrt().max(1.0);
     let factors: Vec<f64> = (0..variances.len()).map(factor).collect();
@@ -139,32 +148,40 @@ fn widen(covariance: &mut DMatrix<f64>, variances: &DVector<f64>) {
     }
 }
 
-/// The errors of all signals with the sensitivities beside them.
+/// The errors of all signals with their sensitivities.
 struct ColouredNoise<'a> {
+    /// The estimate that the errors belong to.
     estimate: LinearizedEstimate<'a>,
+    /// One entry for each signal whose errors are not zero.
     signals: Vec<LaggedProducts>,
-    /// The rows that are known beforehand, squared: sensitivities and their residuals.
+    /// X'X of the rows after the data, where X holds their sensitivities and residuals.
     known: DMatrix<f64>,
-    /// The spread of scores that they bring.
+    /// J'J of these rows: their part of the spread of the scores.
     sure: DMatrix<f64>,
 }
 
-/// The errors of one signal: products of their rows, shifted against each other, so that the likelihood costs the same
-/// however long the recordings are.
+/// The errors of one signal, as sums of products of shifted rows. With these the cost of the likelihood does not depend
+/// on the length of the recordings.
 struct LaggedProducts {
+    /// The rows of each recording.
     ranges: Vec<Range<usize>>,
+    /// Order of the model.
     order: usize,
-    /// First guess: partial autocorrelations, then the logarithm of the deviation of what they do not tell.
+    /// First guess: partial autocorrelations as hyperbolic angles, then the logarithm of the prediction error's
+    /// deviation.
     guess: Vec<f64>,
-    /// The first rows of each series.
+    /// The first `order` rows of each recording.
     heads: Vec<DMatrix<f64>>,
-    /// For each pair of shifts i <= j the sum over the later rows t of x(t-i) x(t-j)'.
+    /// For shifts i and k the sum over the later rows t of x(t-i) x(t-i-k)'.
     lagged: Vec<Vec<DMatrix<f64>>>,
+    /// Number of rows of all recordings.
     rows: usize,
+    /// Number of rows of the longest recording.
     longest: usize,
 }
 
 impl<'a> ColouredNoise<'a> {
+    /// Sums up the rows of each signal.
     fn new(estimate: LinearizedEstimate<'a>) -> ColouredNoise<'a> {
         let (data, rows) = (estimate.data(), estimate.jacobian.nrows());
         let with_errors = beside(estimate, data..rows);
@@ -180,7 +197,7 @@ impl<'a> ColouredNoise<'a> {
         }
     }
 
-    /// Each signal with its part of the models' parameters.
+    /// Each signal with its part of the models' parameters: `order` angles and a logarithm.
     fn each<'p>(&self, at: &'p [f64]) -> impl Iterator<Item = (&LaggedProducts, &'p [f64])> {
         let mut rest = at;
         self.signals.iter().map(move |s| {
@@ -190,7 +207,8 @@ impl<'a> ColouredNoise<'a> {
         })
     }
 
-    /// The restricted likelihood's negative logarithm, but for a constant; infinite where a model is none.
+    /// The negative logarithm of the restricted likelihood, without its constant; infinite where a model is not
+    /// stationary.
     fn badness(&self, at: &[f64], small: f64) -> f64 {
         let n = self.estimate.jacobian.ncols();
         let mut squares = self.known.clone();
@@ -203,18 +221,20 @@ impl<'a> ColouredNoise<'a> {
         (0..n).for_each(|j| information[(j, j)] += small);
         let Some(factor) = information.cholesky() else { return f64::INFINITY };
         let slope = squares.view((0, n), (n, 1)).into_owned();
+        // The part of the whitened residual that the unknowns explain is removed; ln det of the information is the
+        // restriction of the likelihood.
         let explained = factor.l().solve_lower_triangular(&slope).map_or(0.0, |v| v.norm_squared());
         let volume = 2.0 * factor.l_dirty().diagonal().map(f64::ln).sum();
         0.5 * (size + squares[(n, n)] - explained + volume)
     }
 
-    /// The likeliest models.
+    /// The parameters of maximum restricted likelihood.
     fn found(&self, small: f64) -> Vec<f64> {
         let guess: Vec<f64> = self.signals.iter().flat_map(|s| s.guess.iter().copied()).collect();
         descend(&mut |at| self.badness(at, small), &guess, STEP)
     }
 
-    /// The spread of the scores: sensitivities times errors with the models' covariance.
+    /// J'SJ: the covariance of the scores, with the covariance S of the models.
     fn scores(&self, at: &[f64]) -> DMatrix<f64> {
         let mut spread = self.sure.clone();
         for (signal, at) in self.each(at) {
@@ -227,7 +247,9 @@ impl<'a> ColouredNoise<'a> {
         spread
     }
 
-    /// Twice the square of a variance over the variance of its own, which the uncertainty of the models brings.
+    /// Satterthwaite's degrees of freedom: twice the square of a variance over the variance of this variance.
+    ///
+    /// The latter comes from the uncertainty of the models, by the delta method on logarithms of variances.
     fn degrees(&self, at: &[f64], small: f64, mut variances: impl FnMut(&[f64]) -> DVector<f64>) -> Vec<f64> {
         let endless = vec![f64::INFINITY; self.estimate.jacobian.ncols()];
         let Some(curvature) = bend(&mut |at| self.badness(at, small), at, STEP).cholesky() else { return endless };
@@ -240,7 +262,7 @@ impl<'a> ColouredNoise<'a> {
     }
 }
 
-/// Sensitivities and residual of some rows side by side.
+/// Sensitivities and residual of some rows side by side, n + 1 columns.
 fn beside(estimate: LinearizedEstimate<'_>, rows: Range<usize>) -> DMatrix<f64> {
     let n = estimate.jacobian.ncols();
     DMatrix::from_fn(rows.len(), n + 1, |t, j| {
@@ -250,7 +272,7 @@ fn beside(estimate: LinearizedEstimate<'_>, rows: Range<usize>) -> DMatrix<f64> 
 }
 
 impl LaggedProducts {
-    /// `None` where there is nothing to learn a model from.
+    /// Sums up the rows of one signal. `None` where it has no rows, or where its errors are zero.
     fn new<'s>(
         series: impl Iterator<Item = &'s ResidualSeries>,
         estimate: LinearizedEstimate<'_>,
@@ -259,6 +281,7 @@ impl LaggedProducts {
         let rows: usize = ranges.iter().map(ExactSizeIterator::len).sum();
         let shortest = ranges.iter().map(ExactSizeIterator::len).min()?;
         let errors: Vec<&[f64]> = ranges.iter().map(|r| &estimate.residual.as_slice()[r.clone()]).collect();
+        // An order above an eighth of the shortest recording could not be estimated.
         let guess = chosen(&errors, ORDER.min(shortest / 8))?;
         let order = guess.len() - 1;
         let columns = estimate.jacobian.ncols() + 1;
@@ -280,7 +303,7 @@ impl LaggedProducts {
         Some(LaggedProducts { ranges, order, guess, heads, lagged, rows, longest })
     }
 
-    /// Adds the squares of the whitened rows; returns the logarithm of the errors' volume.
+    /// Adds X'X of the whitened rows to `squares`; returns the logarithm of the determinant of the errors' covariance.
     fn squares(&self, filter: &WhiteningFilter, squares: &mut DMatrix<f64>) -> f64 {
         let weight = |i: usize| if i == 0 { 1.0 } else { -filter.last()[i - 1] };
         let scale = filter.deviation.powi(-2);
@@ -302,8 +325,8 @@ impl LaggedProducts {
     }
 }
 
-/// Partial autocorrelations (as hyperbolic angles) up to the order of least Schwarz criterion, then the logarithm of
-/// the deviation. `None` for errors that are none.
+/// The model of least Schwarz criterion up to order `most`: its partial autocorrelations as hyperbolic angles, then the
+/// logarithm of the deviation. `None` where all errors are zero.
 fn chosen(errors: &[&[f64]], most: usize) -> Option<Vec<f64>> {
     let rows: usize = errors.iter().map(|e| e.len()).sum();
     let (power, orders) = autoregression::orders(errors, most, NEARLY_ONE);
@@ -314,6 +337,7 @@ fn chosen(errors: &[&[f64]], most: usize) -> Option<Vec<f64>> {
     let mut partial = Vec::new();
     let mut best = (criterion(power, 0), vec![0.5 * power.ln()]);
     for (before, o) in orders.iter().enumerate() {
+        // Angles are unbounded, so the search for the maximum needs no bounds to stay stationary.
         partial.push(o.partial.atanh());
         let now = criterion(o.power, before + 1);
         if now < best.0 {
@@ -323,19 +347,19 @@ fn chosen(errors: &[&[f64]], most: usize) -> Option<Vec<f64>> {
     Some(best.1)
 }
 
-/// Makes errors of a model white.
+/// The whitening filter of an autoregressive model.
 struct WhiteningFilter {
-    /// Deviation of the white ones.
+    /// Standard deviation of the prediction error.
     deviation: f64,
-    /// The prediction from 0, 1, 2.. rows before.
+    /// Coefficients of the predictions from 0, 1, 2, .. rows before.
     coefficients: Vec<Vec<f64>>,
-    /// By how much the variance of each of the first errors is larger than that of later ones, given those before; 1
-    /// last.
+    /// For each of the first rows the ratio of its prediction variance to that of later rows; the last entry is 1.
     excess: Vec<f64>,
 }
 
 impl WhiteningFilter {
-    /// From partial autocorrelations and deviation; `None` where errors resemble each other for longer than was looked.
+    /// The filter of a model. `None` where its partial autocorrelations are so close to 1 that errors would be
+    /// correlated for longer than the longest recording.
     fn new(at: &[f64], longest: usize) -> Option<WhiteningFilter> {
         let (deviation, angles) = at.split_last()?;
         let partial: Vec<f64> = angles.iter().map(|a| a.tanh()).collect();
@@ -343,6 +367,7 @@ impl WhiteningFilter {
         if partial.iter().any(|p| p.abs() > limit) || deviation.abs() > 300.0 {
             return None;
         }
+        // Each order that is missing at the beginning enlarges the prediction variance by 1/(1 - p^2).
         let mut excess = vec![1.0];
         partial.iter().rev().for_each(|p| excess.push(excess[excess.len() - 1] / (1.0 - p * p)));
         excess.reverse();
@@ -351,11 +376,12 @@ impl WhiteningFilter {
         Some(WhiteningFilter { deviation: deviation.exp(), coefficients, excess })
     }
 
+    /// The coefficients of the full order.
     fn last(&self) -> &[f64] {
         &self.coefficients[self.coefficients.len() - 1]
     }
 
-    /// The whitened rows of a series, from its beginning.
+    /// The whitened rows of a series that starts at its first row.
     fn forwards(&self, x: DMatrix<f64>) -> DMatrix<f64> {
         let mut white = x.clone();
         for t in 0..x.nrows() {
@@ -370,8 +396,7 @@ impl WhiteningFilter {
         white
     }
 
-    /// The rows whose squares are those of `x` with the errors' covariance between them: the transposed whitening
-    /// undone.
+    /// Rows Y with Y'Y = X'SX for the covariance S of the errors: the inverse of the transposed whitening.
     fn backwards(&self, x: DMatrix<f64>) -> DMatrix<f64> {
         let (rows, columns) = x.shape();
         let last = self.excess.len() - 1;
@@ -381,7 +406,7 @@ impl WhiteningFilter {
             for t in (0..rows).rev() {
                 let k = t.min(last);
                 let undone = column[t] * self.deviation * self.excess[k].sqrt();
-                // what the rows before it say of this one
+                // This row contributes to the predictions from the rows before it.
                 for (i, a) in self.coefficients[k].iter().enumerate() {
                     column[t - 1 - i] += a * column[t];
                 }

@@ -1,16 +1,18 @@
-//! Which column of a recording drives which input: `F=tau_N[N]:linear`.
+//! Parses which column of a recording drives which input: `F=tau_N[N]:linear`.
+//!
+//! Entries of `--map` and of the section `[map]` enter; [`InputMap`]s leave.
 
-/// How an input runs between the samples of its recording.
+/// Interpolation of an input between the samples of its recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InputHold {
     /// Each sample holds until the next one; every change is an event.
     Held,
-    /// Straight lines between samples.
+    /// Linear interpolation.
     Linear,
 }
 
 impl InputHold {
-    /// Reads `held` (or `hold`) and `linear`.
+    /// Parses `held` (or `hold`) and `linear`; `None` for other words.
     pub fn parse(text: &str) -> Option<InputHold> {
         match text.trim() {
             "held" | "hold" => Some(InputHold::Held),
@@ -20,16 +22,16 @@ impl InputHold {
     }
 }
 
-/// An entry of `--map`.
+/// An input and the column that drives it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct InputMap {
     /// The model's input.
     pub input: String,
     /// The recording's column.
     pub column: String,
-    /// The unit of the column, where it is not the input's.
+    /// The unit of the column; `None` for that of the input.
     pub unit: Option<String>,
-    /// Between samples; `None` where the entry does not say.
+    /// Interpolation; `None` where the entry does not state it.
     pub hold: Option<InputHold>,
 }
 
@@ -48,10 +50,10 @@ impl InputMap {
         InputMap::of(input, source)
     }
 
-    /// Reads what stands behind `input=`.
+    /// Parses what follows `input=`.
     ///
     /// # Errors
-    /// A sentence saying what is expected.
+    /// A sentence that says what is expected.
     pub fn of(input: &str, source: &str) -> Result<InputMap, String> {
         let (source, hold) = match source.rsplit_once(':') {
             Some((rest, word)) => match InputHold::parse(word) {
@@ -62,6 +64,7 @@ impl InputMap {
         };
         let source = source.trim();
         let bracket = source.strip_suffix(']').and_then(|s| s.rsplit_once('['));
+        // `v[3]` is a column with an index, `tau[N]` a column with a unit.
         let is_index = |s: &str| s.chars().all(|c| c.is_ascii_digit() || c == ',' || c == ' ');
         let (column, unit) = match bracket {
             Some((column, unit)) if !is_index(unit) && !column.is_empty() => (column, Some(unit.trim().to_owned())),

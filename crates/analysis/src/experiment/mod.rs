@@ -24,55 +24,57 @@ pub use table::parse;
 
 use bramah_results::CsvUnits;
 
-/// What is to be run; `None` and empty lists where nothing was said.
+/// What to run. `None` and empty lists stand for what the file or the command line does not state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ExperimentSpecification {
     /// A file, a folder that is a package, or the dotted name of a class that ships with bramah.
     pub file: Option<String>,
-    /// The class to run.
+    /// The dotted name of the class to run.
     pub model: Option<String>,
     /// Values of parameters: dotted name, and the value as written, with or without unit.
     pub set: Vec<(String, String)>,
-    /// Seconds.
+    /// Start time in seconds.
     pub start_time: Option<f64>,
-    /// Seconds.
+    /// Stop time in seconds.
     pub stop_time: Option<f64>,
     /// Seconds between output rows.
     pub output_interval: Option<f64>,
-    /// Event rows at most: 0 for none, `u64::MAX` for all.
+    /// Largest number of rows written at events: 0 for none, `u64::MAX` for all.
     pub event_rows: Option<u64>,
-    /// Where a CSV says its units.
+    /// Where a CSV file states the units of its columns.
     pub csv_units: Option<CsvUnits>,
     /// Relative tolerance of the integration.
     pub relative_tolerance: Option<f64>,
     /// Patterns of variables to write.
     pub variables: Vec<String>,
-    /// Where the result goes.
+    /// The file of the result.
     pub output_file: Option<String>,
-    /// A picture of the result.
+    /// The file of a picture of the result.
     pub plot: Option<String>,
-    /// A recording that drives the model.
+    /// The recording that drives the inputs.
     pub input: Option<String>,
     /// The recording's time column.
     pub time_column: Option<String>,
     /// Which column drives which input, and how.
     pub map: Vec<InputMap>,
-    /// How inputs run between samples where their own entry does not say.
+    /// Interpolation of inputs whose entry in `map` does not state it.
     pub interpolation: Option<InputHold>,
     /// Folders with further packages.
     pub library: Vec<String>,
     /// C sources and shared libraries that external functions may call.
     pub external: Vec<String>,
-    /// Where the statistics go.
+    /// The file of the statistics of the run.
     pub statistics: Option<String>,
-    /// Warnings are errors.
+    /// Whether warnings are errors.
     pub deny_warnings: Option<bool>,
     /// What `bramah sweep` varies.
     pub sweep: Option<ParameterSweep>,
 }
 
 impl ExperimentSpecification {
-    /// What `self` says, and where it says nothing, what `other` says. Of a parameter set twice `self` wins.
+    /// Merges two specifications: `self` where it states something, else `other`.
+    ///
+    /// Parameters and inputs are merged one by one.
     #[must_use]
     pub fn over(mut self, other: ExperimentSpecification) -> ExperimentSpecification {
         let own: Vec<String> = self.set.iter().map(|s| s.0.clone()).collect();
@@ -108,10 +110,10 @@ impl ExperimentSpecification {
     }
 }
 
-/// A time in seconds: a number, or a number with a unit of time.
+/// Parses a time: a number in seconds, or a number with a unit of time.
 ///
 /// # Errors
-/// A sentence saying what is expected.
+/// A sentence that says what is expected.
 pub fn seconds(text: &str) -> Result<f64, String> {
     let (value, unit) = bramah_expr::units::quantity(text).map_err(|e| e.to_string())?;
     let second = bramah_expr::units::MeasurementUnit::parse("s").map_err(|e| e.to_string())?;
@@ -122,10 +124,10 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     time.filter(|t| t.is_finite()).ok_or_else(|| format!("`{text}` is no time; write `2`, `2 s` or `500 ms`"))
 }
 
-/// How many event rows a result may have: `all`, `none` or a number.
+/// Parses a number of event rows: `all`, `none` or a number.
 ///
 /// # Errors
-/// A sentence saying what is expected.
+/// A sentence that says what is expected.
 pub fn event_rows(text: &str) -> Result<u64, String> {
     match text.trim() {
         "all" => Ok(u64::MAX),
@@ -137,10 +139,10 @@ pub fn event_rows(text: &str) -> Result<u64, String> {
     }
 }
 
-/// A length of time in seconds, written like [`seconds`].
+/// Parses a positive length of time in seconds, written as for [`seconds`].
 ///
 /// # Errors
-/// A sentence saying what is expected; also when the time is not positive.
+/// A sentence that says what is expected.
 pub fn duration(text: &str) -> Result<f64, String> {
     match seconds(text)? {
         length if length > 0.0 => Ok(length),
@@ -148,10 +150,10 @@ pub fn duration(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A relative tolerance.
+/// Parses a relative tolerance between 0 and 1.
 ///
 /// # Errors
-/// A sentence saying what is expected.
+/// A sentence that says what is expected.
 pub fn tolerance(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(v) if v > 0.0 && v < 1.0 => Ok(v),

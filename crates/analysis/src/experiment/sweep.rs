@@ -19,7 +19,7 @@ use toml::de::DeValue;
 
 use super::table::{ExperimentReader, ExperimentValue, scalar};
 
-/// How samples are chosen.
+/// How the parameter values of the runs are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SamplingMethod {
     /// All combinations of values.
@@ -27,14 +27,15 @@ pub enum SamplingMethod {
     Grid,
     /// The first values of all parameters, then the second ones, and so on.
     List,
-    /// Each parameter's range in as many equal parts as samples, one sample in each.
+    /// Latin hypercube: one sample in each of as many equal intervals as there are samples, for each parameter.
     LatinHypercube,
-    /// A Sobol' sequence in the design that gives sensitivity indices.
+    /// A Sobol' sequence in the design for sensitivity indices.
     Sobol,
     /// Independent random numbers.
     MonteCarlo,
 }
 
+/// Names of the methods in the file.
 const METHODS: &[(&str, SamplingMethod)] = &[
     ("grid", SamplingMethod::Grid),
     ("list", SamplingMethod::List),
@@ -43,43 +44,45 @@ const METHODS: &[(&str, SamplingMethod)] = &[
     ("monte-carlo", SamplingMethod::MonteCarlo),
 ];
 
-/// How one parameter varies. Values are as written, in the parameter's unit or with one.
+/// How a parameter varies. Values stay as written, in the parameter's unit or with a unit.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ParameterVariation {
-    /// `1,2,5` or `FROM:TO:COUNT`, with a unit at the end for all.
+    /// `1,2,5` or `FROM:TO:COUNT`, with one unit for all at the end.
     Values(String),
-    /// Evenly between two values.
+    /// Uniform between two values.
     Range {
-        /// The smallest.
+        /// The smallest value.
         min: String,
-        /// The largest.
+        /// The largest value.
         max: String,
-        /// Evenly over the logarithm.
+        /// Whether it is uniform in the logarithm.
         logarithmic: bool,
     },
-    /// Normally around the model's value, log-normally where that is positive and the deviation relative.
+    /// Normal around the model's value; log-normal where the value is positive and the deviation relative.
     Sigma(String),
 }
 
-/// A sweep.
+/// The section `[sweep]`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ParameterSweep {
     /// How samples are chosen.
     pub method: SamplingMethod,
-    /// How many, where values do not say.
+    /// Number of samples of the random methods, and of base points for Sobol' indices.
     pub count: usize,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// Parameters and how they vary.
+    /// Names of parameters and how they vary.
     pub parameters: Vec<(String, ParameterVariation)>,
     /// Names of results and their expressions.
     pub results: Vec<(String, String)>,
 }
 
+/// Keys of `[sweep]`.
 const KEYS: &[&str] = &["method", "count", "seed", "parameters", "results"];
+/// Keys of a parameter's table.
 const SPREAD_KEYS: &[&str] = &["min", "max", "log", "sigma"];
 
-/// Reads the section.
+/// Reads the section; `None` where it is no table.
 pub(super) fn sweep(reader: &mut ExperimentReader, value: &ExperimentValue<'_>) -> Option<ParameterSweep> {
     let DeValue::Table(table) = value.get_ref() else {
         reader.wrong_kind("sweep", value, "a table");
@@ -102,6 +105,7 @@ pub(super) fn sweep(reader: &mut ExperimentReader, value: &ExperimentValue<'_>) 
     Some(sweep)
 }
 
+/// The key `method`.
 fn method(reader: &mut ExperimentReader, value: &ExperimentValue<'_>) -> SamplingMethod {
     let text = value.get_ref().as_str().unwrap_or("");
     match METHODS.iter().find(|m| m.0 == text) {
@@ -114,6 +118,7 @@ fn method(reader: &mut ExperimentReader, value: &ExperimentValue<'_>) -> Samplin
     }
 }
 
+/// An integer from 0 to 1e8; 1, with a message, for other values.
 fn whole(reader: &mut ExperimentReader, key: &str, value: &ExperimentValue<'_>) -> u64 {
     let number = scalar(value.get_ref()).and_then(|t| t.parse::<u64>().ok()).filter(|n| *n <= 100_000_000);
     if number.is_none() {
@@ -122,7 +127,7 @@ fn whole(reader: &mut ExperimentReader, key: &str, value: &ExperimentValue<'_>) 
     number.unwrap_or(1)
 }
 
-/// Dotted keys arrive as tables inside tables.
+/// Reads `[sweep.parameters]`. Dotted keys arrive as tables inside tables; `prefix` is the name so far.
 fn parameters(
     reader: &mut ExperimentReader,
     prefix: &str,
@@ -177,6 +182,7 @@ fn spread(reader: &mut ExperimentReader, value: &ExperimentValue<'_>) -> Option<
     }
 }
 
+/// Reads `[sweep.results]`.
 fn results(reader: &mut ExperimentReader, value: &ExperimentValue<'_>, out: &mut Vec<(String, String)>) {
     let DeValue::Table(table) = value.get_ref() else {
         reader.wrong_kind("results", value, "a table of names and expressions");

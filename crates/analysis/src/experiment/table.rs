@@ -1,4 +1,6 @@
-//! The TOML text read, with every mistake shown at its place.
+//! Parses the TOML text of an experiment file into an [`ExperimentSpecification`].
+//!
+//! All mistakes become diagnostics at their places in the text. The command puts its own flags over the result.
 
 use std::ops::Range;
 
@@ -34,12 +36,13 @@ const KEYS: &[&str] = &[
     "sweep",
 ];
 
+/// A TOML value with its place in the text.
 pub(super) type ExperimentValue<'a> = Spanned<DeValue<'a>>;
 
-/// Reads an experiment file that was added to `sources`. Paths in it are as written.
+/// Parses an experiment file that was added to `sources`. Paths in it stay as written.
 ///
 /// # Errors
-/// [`Code::BadExperiment`]: text that is not TOML, unknown keys, values of the wrong kind.
+/// [`Code::BadExperiment`]: text that is not TOML, unknown keys, values of the wrong type.
 pub fn parse(sources: &Sources, file: FileId) -> StageResult<ExperimentSpecification> {
     let text = &sources.get(file).text;
     let (document, errors) = DeTable::parse_recoverable(text);
@@ -61,7 +64,7 @@ pub fn parse(sources: &Sources, file: FileId) -> StageResult<ExperimentSpecifica
     }
 }
 
-/// Reads values and collects what is wrong with them.
+/// Reads values and collects diagnostics.
 pub(super) struct ExperimentReader {
     file: FileId,
     experiment: ExperimentSpecification,
@@ -69,22 +72,26 @@ pub(super) struct ExperimentReader {
 }
 
 impl ExperimentReader {
+    /// A diagnostic at a byte range of the text.
     fn diagnostic(&self, place: &Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Diagnostic {
         let byte = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
         let span = Span { file: self.file, start: byte(place.start), end: byte(place.end) };
         Diagnostic::new(Code::BadExperiment, message).at(span, label)
     }
 
+    /// Adds a mistake at a place.
     pub(super) fn report(&mut self, place: &Range<usize>, message: impl Into<String>, label: impl Into<String>) {
         let diagnostic = self.diagnostic(place, message, label);
         self.diagnostics.push(diagnostic);
     }
 
+    /// Reports a value of another type than expected.
     pub(super) fn wrong_kind(&mut self, key: &str, value: &ExperimentValue<'_>, expected: &str) {
         let found = value.get_ref().type_str();
         self.report(&value.span(), format!("`{key}` is {expected}"), format!("this is a value of type {found}"));
     }
 
+    /// Reads one key at the top.
     fn entry(&mut self, key: &str, place: &Range<usize>, value: &ExperimentValue<'_>) {
         match key {
             "file" => self.experiment.file = self.text(key, value),
@@ -115,8 +122,10 @@ impl ExperimentReader {
         }
     }
 
+    /// Reports an unknown key, with the most similar known one, else with all of them.
     pub(super) fn unknown(&mut self, key: &str, place: &Range<usize>, known: &[&str]) {
         let mut diagnostic = self.diagnostic(place, format!("there is no key `{key}`"), "unknown key");
+        // A key with underscores is most likely the same one with dashes.
         let with_dashes = key.replace('_', "-");
         let same = known.iter().copied().find(|k| *k == with_dashes);
         diagnostic = match same.or_else(|| nearest(key, known.iter().copied())) {
@@ -129,6 +138,7 @@ impl ExperimentReader {
         self.diagnostics.push(diagnostic);
     }
 
+    /// A string.
     pub(super) fn text(&mut self, key: &str, value: &ExperimentValue<'_>) -> Option<String> {
         let text = value.get_ref().as_str().map(str::to_owned);
         if text.is_none() {
@@ -137,7 +147,7 @@ impl ExperimentReader {
         text
     }
 
-    /// A number, or a text that `read` understands.
+    /// A number, or a string that `read` parses.
     fn number<T>(&mut self, key: &str, value: &ExperimentValue<'_>, read: fn(&str) -> Result<T, String>) -> Option<T> {
         let text = match value.get_ref() {
             DeValue::Integer(_) | DeValue::Float(_) | DeValue::String(_) => scalar(value.get_ref())?,
@@ -149,7 +159,7 @@ impl ExperimentReader {
         read(&text).map_err(|e| self.report(&value.span(), e, format!("value of `{key}`"))).ok()
     }
 
-    /// A list of texts, or one text with commas.
+    /// A list of strings, or one string with commas.
     fn list(&mut self, key: &str, value: &ExperimentValue<'_>) -> Vec<String> {
         match value.get_ref() {
             DeValue::String(text) => glob::split_list(text),
@@ -161,7 +171,7 @@ impl ExperimentReader {
         }
     }
 
-    /// Values of parameters; dotted keys arrive as tables inside tables.
+    /// Reads `[set]`. Dotted keys arrive as tables inside tables; `prefix` is the name so far.
     fn set(&mut self, prefix: &str, value: &ExperimentValue<'_>) {
         let DeValue::Table(table) = value.get_ref() else {
             self.wrong_kind("set", value, "a table of parameters and values");
@@ -180,6 +190,7 @@ impl ExperimentReader {
         }
     }
 
+    /// Reads `map`: a table, or one string as on the command line.
     fn map(&mut self, value: &ExperimentValue<'_>) {
         match value.get_ref() {
             DeValue::String(text) => {
@@ -196,6 +207,7 @@ impl ExperimentReader {
         }
     }
 
+    /// Adds an entry of `map`, or reports why it cannot be parsed.
     fn mapped(&mut self, entry: Result<InputMap, String>, value: &ExperimentValue<'_>) {
         match entry {
             Ok(entry) => self.experiment.map.push(entry),
@@ -229,6 +241,7 @@ impl ExperimentReader {
         }
     }
 
+    /// An interpolation: `held` or `linear`.
     fn hold(&mut self, key: &str, value: &ExperimentValue<'_>) -> Option<InputHold> {
         let hold = value.get_ref().as_str().and_then(InputHold::parse);
         if hold.is_none() {
@@ -238,13 +251,15 @@ impl ExperimentReader {
     }
 }
 
+/// Keys of an entry of `[map]`.
 const MAP_KEYS: &[&str] = &["column", "unit", "interpolation"];
 
+/// Whether a table with this key is an entry of `[map]`, and no part of a dotted name.
 fn is_map_key(key: &str) -> bool {
     MAP_KEYS.contains(&key)
 }
 
-/// A value as Modelica writes it.
+/// A value in the syntax of Modelica; `None` for tables and dates.
 pub(super) fn scalar(value: &DeValue<'_>) -> Option<String> {
     match value {
         DeValue::String(text) => Some(text.to_string()),

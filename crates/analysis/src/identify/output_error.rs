@@ -499,7 +499,6 @@ impl OutputError<'_> {
 
     /// Checks sensitivities against a central difference along one direction that moves all unknowns at once.
     fn agrees(&self, case: usize, z: &[f64], columns: &[Vec<f64>]) -> Result<(), String> {
-        // each as far as it moves the errors alike, so that none hides behind another
         // Each unknown moves far enough to affect the errors equally, so that a wrong column cannot hide behind a
         // larger one. The cosine varies the sign, so that wrong columns do not cancel each other systematically.
         let size = |c: &Vec<f64>| c.iter().map(|v| v * v).sum::<f64>().sqrt();

@@ -129,7 +129,7 @@ fn dependence(name: &str, errors: &[&[f64]], input: &[Vec<f64>], lags: usize) ->
         return None;
     }
     // The variance of a correlation of two coloured, independent series is (1 + 2 sum r_e(k) r_u(k))/n (Bartlett). The
-    // taper keeps the sum from going negative by the noise of large lags.
+    // taper damps the noise of large lags, and 0.1 bounds the sum from below.
     let both = |lag: usize| product(&e, &e, lag) / e0 * product(&u, &u, lag) / u0;
     let taper = |lag: usize| 1.0 - lag as f64 / (lags + 1) as f64;
     let n: usize = e.iter().map(Vec::len).sum();

@@ -1,7 +1,7 @@
 //! Runs of a model along recordings, sampled at the times of the measurements.
 //!
 //! A recording becomes [`RunInputs`]; a [`ModelRunner`] runs the model along them and returns columns of values at the
-//! samples. The output error and the diagnosis in `crates/gap` use it.
+//! samples, for the output error.
 
 use crate::study::{BoundStudy, Recording};
 use bramah_circuit::compiled::CompiledModel;

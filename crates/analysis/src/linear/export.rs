@@ -1,4 +1,6 @@
-//! A linear model as text for people, CSV, JSON, `.mat` and Modelica.
+//! Writes a linear model as text for people, JSON, CSV, MATLAB `.mat` and Modelica.
+//!
+//! A [`StateSpace`] enters; texts or bytes leave, which the command writes. Poles and zeros are computed here.
 
 use super::{Pole, Quantity, StateSpace, poles, zeros};
 use crate::steady::moving;
@@ -9,7 +11,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 impl StateSpace {
-    /// Everything, with poles and zeros.
+    /// The whole model as JSON, with poles and the zeros of all pairs of input and output.
     pub fn json(&self) -> Value {
         let quantity = |q: &Quantity| json!({"name": q.name, "unit": q.unit, "value": q.value});
         let list = |q: &[Quantity]| q.iter().map(quantity).collect::<Vec<_>>();
@@ -38,6 +40,7 @@ impl StateSpace {
         })
     }
 
+    /// For each pair of input and output its zeros.
     fn all_zeros(&self) -> Vec<Value> {
         let pairs = (0..self.outputs.len()).flat_map(|o| (0..self.inputs.len()).map(move |i| (i, o)));
         pairs
@@ -49,7 +52,7 @@ impl StateSpace {
     }
 }
 
-/// Poles and zeros in words.
+/// A table of poles with participating states, and a list of zeros.
 pub fn words(model: &StateSpace) -> String {
     let mut out = format!("{} at {} s", model.class, rounded(model.time, 9));
     let _ = writeln!(
@@ -59,6 +62,7 @@ pub fn words(model: &StateSpace) -> String {
         model.inputs.len(),
         model.outputs.len()
     );
+    // `moving` distinguishes a steady state, one at constant rates, and none.
     let nominals: Vec<f64> = model.states.iter().map(|s| s.nominal).collect();
     match moving(&model.a, &model.rates, &nominals) {
         None => out.push_str("not a steady state: rates are not zero\n"),
@@ -72,6 +76,7 @@ pub fn words(model: &StateSpace) -> String {
     let poles = poles(model);
     for (k, p) in poles.iter().enumerate() {
         let same = |o: &&Pole| (o.re, o.im, &o.participation) == (p.re, p.im, &p.participation);
+        // Coinciding poles are one line with their number.
         if p.together > 1 && poles[..k].iter().any(|o| same(&o)) {
             continue;
         }
@@ -104,11 +109,12 @@ pub fn words(model: &StateSpace) -> String {
     out
 }
 
+/// A complex number, which for an imaginary part stands for the conjugate pair.
 fn complex(re: f64, im: f64) -> String {
     if im == 0.0 { rounded(re, 6) } else { format!("{} +- {}i", rounded(re, 6), rounded(im, 6)) }
 }
 
-/// The four matrices below each other: matrix, row, column, names, units and values, one entry a line, zeros left out.
+/// One line for each nonzero entry: matrix, row, column (from 1), names of both, value.
 pub fn csv(model: &StateSpace) -> String {
     let mut out = String::from("matrix,row,column,row_name,column_name,value\n");
     let mut part = |name: &str, m: &DMatrix<f64>, rows: &[Quantity], columns: &[Quantity]| {
@@ -128,13 +134,14 @@ pub fn csv(model: &StateSpace) -> String {
     out
 }
 
-/// A MATLAB file of version 4 with `A`, `B`, `C`, `D` and the operating point `x0`, `u0`, `y0`.
+/// A MATLAB file of version 4 with the matrices `A`, `B`, `C`, `D` and the operating point `x0`, `u0`, `y0`.
 pub fn mat(model: &StateSpace) -> Vec<u8> {
     let mut out = Vec::new();
     let mut put = |name: &str, rows: usize, values: &[f64]| {
         write_matrix(&mut out, name, rows, values).expect("writing to memory cannot fail");
     };
     for (name, m) in [("A", &model.a), ("B", &model.b), ("C", &model.c), ("D", &model.d)] {
+        // nalgebra and MATLAB both store by columns.
         put(name, m.nrows(), m.as_slice());
     }
     for (name, list) in [("x0", &model.states), ("u0", &model.inputs), ("y0", &model.outputs)] {
@@ -144,7 +151,7 @@ pub fn mat(model: &StateSpace) -> Vec<u8> {
     out
 }
 
-/// A small Modelica model: inputs, states and outputs are the quantities themselves, not deviations.
+/// A Modelica model of the given name. Inputs, states and outputs are the quantities themselves, not deviations.
 pub fn modelica(model: &StateSpace, name: &str) -> String {
     let mut out = format!("model {name} \"{} near {} s\"\n", model.class, text(model.time));
     let vector = |list: &[Quantity]| {
@@ -165,6 +172,7 @@ pub fn modelica(model: &StateSpace, name: &str) -> String {
             let _ = writeln!(out, "  parameter Real {letter}_0[{size}] = {};", vector(list));
         }
     }
+    // Modelica has no literal for an empty matrix, so matrices without entries are left out.
     for (letter, rows, columns, value) in
         [("A", n, n, &model.a), ("B", n, m, &model.b), ("C", p, n, &model.c), ("D", p, m, &model.d)]
     {
@@ -172,6 +180,7 @@ pub fn modelica(model: &StateSpace, name: &str) -> String {
             let _ = writeln!(out, "  parameter Real {letter}[{rows}, {columns}] = {};", matrix(value));
         }
     }
+    // Away from a steady state the deviation starts with the rates of the operating point.
     let rates: Vec<String> = model.rates.iter().map(|v| text(*v)).collect();
     let _ = writeln!(out, "  parameter Real rate_0[{n}] = {{{}}};", rates.join(", "));
     let _ = writeln!(out, "  Real x[{n}](start = x_0, each fixed = true);");

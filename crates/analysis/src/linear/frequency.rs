@@ -1,15 +1,18 @@
-//! Frequency responses, and pictures of them and of poles.
+//! Frequency responses of a linear model, Bode diagrams and pole maps.
+//!
+//! A [`StateSpace`] and its [`Pole`]s enter; complex matrices or [`Figure`]s leave, for `--bode` and `--poles`.
 
 use super::{Pole, StateSpace};
 use bramah_plot::{Figure, FigurePanel, PlotSeries};
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{PI, TAU};
 
-/// D + C (j omega - A)^-1 B at a frequency in Hz, by outputs and inputs; `None` at an undamped pole.
+/// The frequency response D + C (j omega - A)^-1 B at a frequency in Hz, p by m; `None` at an undamped pole.
 pub fn response(model: &StateSpace, frequency: f64) -> Option<DMatrix<Complex<f64>>> {
     let n = model.states.len();
     let size = |i: usize| model.states[i].nominal;
     let complex = |v: f64| Complex::new(v, 0.0);
+    // States are scaled by their nominal values, so that the matrix is well conditioned whatever their units.
     let mut inner = DMatrix::from_fn(n, n, |i, j| complex(-model.a[(i, j)] * size(j) / size(i)));
     (0..n).for_each(|i| inner[(i, i)] += Complex::new(0.0, TAU * frequency));
     let b = DMatrix::from_fn(n, model.inputs.len(), |i, j| complex(model.b[(i, j)] / size(i)));
@@ -21,22 +24,24 @@ pub fn response(model: &StateSpace, frequency: f64) -> Option<DMatrix<Complex<f6
     Some(d + c * inner.lu().solve(&b)?)
 }
 
-/// Points of a curve.
+/// Points of a Bode curve.
 const POINTS: u32 = 400;
-/// Decades drawn at most.
+/// Largest number of decades drawn.
 const DECADES: f64 = 6.0;
 
-/// Frequencies that show all poles, in Hz, evenly spread over their logarithm.
+/// Frequencies in Hz that span all poles, a decade beyond them on both sides, at equal distances of their logarithms.
 fn frequencies(poles: &[Pole]) -> Vec<f64> {
+    // Poles at zero have no place on a logarithmic axis.
     let known = || poles.iter().map(|p| p.frequency).filter(|f| *f > 1e-6);
     let low = known().fold(f64::INFINITY, f64::min);
     let high = known().fold(0.0, f64::max);
+    // Without a pole there is no scale; four decades around 1 Hz are drawn.
     let (low, high) = if high > 0.0 { (low / 10.0, high * 10.0) } else { (0.01, 100.0) };
     let low = low.max(high / 10f64.powf(DECADES));
     (0..POINTS).map(|k| low * (high / low).powf(f64::from(k) / f64::from(POINTS - 1))).collect()
 }
 
-/// Magnitude in dB and phase in degrees over frequency, one curve a pair of input and output.
+/// The Bode diagram: magnitude in dB and phase in degrees, one curve for each pair of input and output.
 pub fn bode(model: &StateSpace, poles: &[Pole]) -> Figure {
     let frequencies = frequencies(poles);
     let x: Vec<f64> = frequencies.iter().map(|f| f.log10()).collect();
@@ -72,7 +77,7 @@ pub fn bode(model: &StateSpace, poles: &[Pole]) -> Figure {
     }
 }
 
-/// Phases in degrees without jumps by a turn.
+/// Phases in degrees, continuous over the frequency; NaN where the response has no value.
 fn unwrapped(values: &[Option<Complex<f64>>]) -> Vec<f64> {
     let mut last: Option<f64> = None;
     let one = |v: &Option<Complex<f64>>| {
@@ -87,12 +92,12 @@ fn unwrapped(values: &[Option<Complex<f64>>]) -> Vec<f64> {
     values.iter().map(one).collect()
 }
 
-/// How much nearer to the origin the next panel of poles goes.
+/// Each further panel of the pole map is smaller by at least this factor.
 const CLOSER: f64 = 8.0;
-/// Panels of poles at most.
+/// Largest number of panels of the pole map.
 const PLANES: usize = 4;
 
-/// Poles in the plane as crosses; further panels show those that crowd around the origin in the one before.
+/// The pole map. Further panels enlarge the poles that crowd around the origin in the panel before.
 pub fn plane(model: &StateSpace, poles: &[Pole]) -> Figure {
     let sizes = || poles.iter().map(|p| p.re.hypot(p.im));
     let mut panels = Vec::new();
@@ -109,6 +114,7 @@ pub fn plane(model: &StateSpace, poles: &[Pole]) -> Figure {
     Figure { title: format!("Poles of {}", model.class), panels, shared_x: false }
 }
 
+/// One panel: poles as crosses, conjugate pairs with both, and the imaginary axis over the height `size` in 1/s.
 fn panel_of_poles(poles: &[&Pole], size: f64) -> FigurePanel {
     let mut crosses = PlotSeries { name: "poles".to_owned(), crosses: true, ..PlotSeries::default() };
     for pole in poles {

@@ -1,4 +1,10 @@
-//! A model near an operating point: x' = A x + B u, y = C x + D u, its poles and zeros, and its quasi-linear form.
+//! Linear state-space models at an operating point: x' = A x + B u, y = C x + D u, with poles, zeros and frequency
+//! responses, and the quasi-linear form over a grid of operating points.
+//!
+//! A compiled model, the names of inputs and outputs ([`InputOutputSelection`]) and a state of a run enter;
+//! [`linearize`] returns a [`StateSpace`] with exact derivatives, [`schedule()`] a [`QuasiLpvModel`]. The commands
+//! `bramah linearize` and `bramah steady` and the trait [`crate::Analyze`] call it. The user's page is
+//! `docs/linearize.md`.
 
 mod export;
 mod frequency;
@@ -21,58 +27,60 @@ use bramah_syntax::diag::{Code, Diagnostic, nearest};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-/// A quantity of a linear model.
+/// A state, input or output of a linear model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// Its name in the model.
+    /// Its dotted name in the model.
     pub name: String,
-    /// Its unit; may be empty.
+    /// Its unit; empty for none.
     pub unit: String,
     /// Its value at the operating point.
     pub value: f64,
-    /// Its usual size, positive.
+    /// Its nominal value, positive; matrices are scaled by it.
     pub nominal: f64,
 }
 
 impl Quantity {
+    /// A variable of the model with its values.
     fn of(variable: &FlatVariable, value: f64, nominal: f64) -> Self {
         let unit = variable.unit.as_deref().unwrap_or("").to_owned();
         Quantity { name: variable.name.clone(), unit, value, nominal }
     }
 
-    /// Name and unit, as comments and descriptions show them.
+    /// Name and unit, for comments and descriptions in files.
     fn words(&self) -> String {
         let unit = if self.unit.is_empty() { "1" } else { &self.unit };
         format!("{} in {unit}", self.name)
     }
 }
 
-/// A linear model around an operating point: the quantities are deviations from their values there.
+/// A linear model of n states, m inputs and p outputs. Its quantities are deviations from their values at the operating
+/// point.
 #[derive(Clone, Debug)]
 pub struct StateSpace {
-    /// The class.
+    /// The name of the model's class.
     pub class: String,
     /// Time of the operating point in seconds.
     pub time: f64,
-    /// States.
+    /// The n states.
     pub states: Vec<Quantity>,
-    /// Inputs, parameters that were asked for among them.
+    /// The m inputs; parameters may be among them.
     pub inputs: Vec<Quantity>,
-    /// Outputs.
+    /// The p outputs.
     pub outputs: Vec<Quantity>,
-    /// Rates of the states at the operating point; all zero where it is steady.
+    /// Derivatives of the states at the operating point; zero where it is steady.
     pub rates: Vec<f64>,
-    /// By states and states.
+    /// d x'/d x, n by n.
     pub a: DMatrix<f64>,
-    /// By states and inputs.
+    /// d x'/d u, n by m.
     pub b: DMatrix<f64>,
-    /// By outputs and states.
+    /// d y/d x, p by n.
     pub c: DMatrix<f64>,
-    /// By outputs and inputs.
+    /// d y/d u, p by m.
     pub d: DMatrix<f64>,
 }
 
-/// Which quantities a linear model has.
+/// The inputs and outputs of a linear model, by name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct InputOutputSelection {
     /// Inputs: top-level inputs or parameters. Empty for all top-level inputs.
@@ -81,47 +89,49 @@ pub struct InputOutputSelection {
     pub outputs: Vec<String>,
 }
 
-/// A model lifted for a [`InputOutputSelection`].
+/// A model prepared for linearisation: parameters and inputs are lifted to states, outputs are chosen.
 #[derive(Clone, Debug)]
 pub struct LinearizationSetup {
-    /// What is evaluated.
+    /// The lifted equations.
     pub plan: Arc<EvaluationPlan>,
-    /// Raised parameters, as inputs.
+    /// Parameters that became inputs.
     parameters: Vec<VarId>,
-    /// All top-level inputs, in declaration order.
+    /// All top-level inputs, in declaration order; they are lifted whether requested or not.
     all_inputs: Vec<VarId>,
-    /// Columns of B and D that were asked for: parameters, then inputs.
+    /// The requested inputs: the column among (parameters, all inputs), and the variable.
     columns: Vec<(usize, VarId)>,
+    /// The output variables.
     outputs: Vec<VarId>,
-    /// What schedules, where the choice was made for a quasi-linear form.
+    /// Scheduling quantities; empty but for a quasi-linear form.
     rho: Vec<SchedulingVariable>,
 }
 
-/// A quantity that schedules.
+/// A scheduling quantity of a quasi-linear form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SchedulingVariable {
     /// Its name.
     pub name: String,
-    /// Its unit; may be empty.
+    /// Its unit; empty for none.
     pub unit: String,
-    /// Where it is found.
+    /// Where its value comes from.
     source: SchedulingSource,
 }
 
-/// Where a scheduling quantity is found.
+/// Where the value of a scheduling quantity comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum SchedulingSource {
-    /// Among raised parameters, then inputs.
+    /// An input of the plan: its place among parameters, then inputs.
     Given(usize),
-    /// Among the outputs.
+    /// An output of the plan with this index.
     Output(usize),
 }
 
 impl LinearizationSetup {
-    /// Finds the names and lifts the model. `extra` are raised too, whatever the choice says.
+    /// Resolves the names and lifts the model. The parameters of `extra` become inputs too.
     ///
     /// # Errors
-    /// [`Code::BadArgument`] for names that the model does not have, that cannot be used so, or that stand twice.
+    /// [`Code::BadArgument`] for names that the model does not have, that cannot be used as such, or that are given
+    /// twice; diagnostics of the structural analysis of the lifted model.
     pub fn new(
         flat: &FlatModel,
         choice: &InputOutputSelection,
@@ -146,6 +156,7 @@ impl LinearizationSetup {
         let columns = wanted.iter().filter_map(|v| place(v).map(|c| (c, *v))).collect();
         let rho = Vec::new();
         let mut chosen = LinearizationSetup { plan: Arc::new(plan), parameters, all_inputs, columns, outputs, rho };
+        // Without outputs the states are the outputs. They are known only after the first analysis, so it runs twice.
         if chosen.outputs.is_empty() {
             chosen.outputs = chosen.plan.state_variables().collect();
             let lifted: StateAugmentedModel = lift(flat, &chosen.parameters, &chosen.outputs);
@@ -154,7 +165,7 @@ impl LinearizationSetup {
         Ok(chosen)
     }
 
-    /// For a quasi-linear form with these inputs, scheduled by inputs, parameters or other variables.
+    /// Prepares a quasi-linear form. `rho` may name inputs, parameters or other variables.
     ///
     /// # Errors
     /// As [`LinearizationSetup::new`].
@@ -168,6 +179,8 @@ impl LinearizationSetup {
             let found = flat.variables.iter().position(|v| v.name == *name);
             found.is_some_and(|i| input_fits(flat, VarId(u32::try_from(i).expect("fewer than 2^32 variables"))))
         };
+        // Inputs and parameters are given from outside; all others are outputs, whose coefficients show what they
+        // multiply.
         let (outside, inside): (Vec<String>, Vec<String>) = rho.iter().cloned().partition(given);
         let extra = names(flat, &outside, input_fits).map_err(|d| vec![d])?;
         let choice = InputOutputSelection { inputs: inputs.to_vec(), outputs: inside.clone() };
@@ -185,45 +198,46 @@ impl LinearizationSetup {
         Ok(chosen)
     }
 
-    /// What schedules.
+    /// The scheduling quantities.
     pub fn rho(&self) -> &[SchedulingVariable] {
         &self.rho
     }
 
-    /// The inputs that were asked for.
+    /// The requested inputs.
     pub fn asked(&self) -> Vec<VarId> {
         self.columns.iter().map(|c| c.1).collect()
     }
 
-    /// Parameters that became inputs.
+    /// The parameters that became inputs.
     pub fn raised(&self) -> impl Iterator<Item = VarId> {
         self.parameters.iter().copied()
     }
 
-    /// States, then raised parameters, then inputs.
+    /// All independent quantities: states, then parameters, then inputs.
     pub fn quantities(&self) -> impl Iterator<Item = VarId> {
         self.plan.state_variables().chain(self.parameters.iter().copied()).chain(self.all_inputs.iter().copied())
     }
 
-    /// The place of a raised parameter or input among parameters, then inputs.
+    /// The column of a variable among parameters, then inputs.
     fn place(&self, v: VarId) -> Option<usize> {
         let own = self.parameters.iter().position(|p| *p == v);
         own.or_else(|| self.all_inputs.iter().position(|i| *i == v).map(|i| self.parameters.len() + i))
     }
 
-    /// Values of the raised parameters and of the inputs in a state of the model.
+    /// Values of the parameters and of the inputs (in this order) in a state of the model.
     pub fn given(&self, state: &State) -> (Vec<f64>, Vec<f64>) {
         let of = |list: &[VarId]| list.iter().map(|v| state.values[v.index()]).collect();
         (of(&self.parameters), of(&self.all_inputs))
     }
 
-    /// The model at a state that a run has left.
+    /// The model evaluated and linearised at a state of a run, discrete values included.
     ///
     /// # Errors
     /// When the equations have no solution there.
     pub fn at(&self, state: &State) -> Result<LocalEvaluator, LocalError> {
         let (theta, u) = self.given(state);
         let mut local = LocalEvaluator::start(self.plan.clone(), state.time, &theta, &u)?;
+        // The start of the lifted model solves its own initial equations; the state of the run replaces that solution.
         local.adopt(state);
         let x = local.state();
         local.linearize(state.time, &x, &theta, &u)?;
@@ -231,7 +245,7 @@ impl LinearizationSetup {
     }
 }
 
-/// The linear model at a state.
+/// The linear model at a state of a run.
 ///
 /// # Errors
 /// As [`LinearizationSetup::at`].
@@ -244,6 +258,7 @@ pub fn linearize(model: &CompiledModel, chosen: &LinearizationSetup, state: &Sta
     let size = |v: VarId| sizes.get(v.index()).copied().unwrap_or(1.0);
     let columns: Vec<usize> = chosen.columns.iter().map(|c| c.0).collect();
     let linear = &local.linear;
+    // The plan has all inputs as columns; only the requested ones are returned.
     let pick = |m: &DMatrix<f64>| m.select_columns(&columns);
     let states = chosen.plan.state_variables().zip(local.state()).zip(local.nominals());
     Ok(StateSpace {
@@ -260,7 +275,7 @@ pub fn linearize(model: &CompiledModel, chosen: &LinearizationSetup, state: &Sta
     })
 }
 
-/// The usual size of each variable.
+/// The nominal value of each variable of the flat model.
 fn sizes(model: &CompiledModel) -> Vec<f64> {
     let system = &model.system;
     let mut values = system.layout.values();
@@ -268,25 +283,29 @@ fn sizes(model: &CompiledModel) -> Vec<f64> {
     ids(&model.flat).map(|v| system.nominal(v, &values)).collect()
 }
 
+/// The ids of all variables.
 fn ids(flat: &FlatModel) -> impl Iterator<Item = VarId> {
     let count = u32::try_from(flat.variables.len()).expect("fewer than 2^32 variables");
     (0..count).map(VarId)
 }
 
+/// Whether a variable is of type Real.
 fn is_real(flat: &FlatModel, v: VarId) -> bool {
     flat.variables[v.index()].ty == ScalarType::Real
 }
 
+/// Whether a variable can be an input of a linear model: a Real input or parameter.
 fn input_fits(flat: &FlatModel, v: VarId) -> bool {
     let variable = &flat.variables[v.index()];
     is_real(flat, v) && (variable.input || variable.variability == Variability::Parameter)
 }
 
+/// Whether a variable can be an output: Real and continuous.
 fn output_fits(flat: &FlatModel, v: VarId) -> bool {
     is_real(flat, v) && flat.variables[v.index()].variability == Variability::Continuous
 }
 
-/// Of a name that stands twice two equal columns or rows would come.
+/// Rejects names that are given twice: they would make two equal rows or columns, and a singular model.
 fn once(wanted: &[String], role: &str) -> Result<(), Diagnostic> {
     match wanted.iter().enumerate().find(|(k, name)| wanted[..*k].contains(name)) {
         None => Ok(()),
@@ -296,10 +315,10 @@ fn once(wanted: &[String], role: &str) -> Result<(), Diagnostic> {
     }
 }
 
-/// The variables of these names that fit.
+/// The variables with these names, in this order, all of which pass `fits`.
 ///
 /// # Errors
-/// [`Code::BadArgument`] with the nearest name.
+/// [`Code::BadArgument`] with the most similar name.
 pub fn names(
     flat: &FlatModel,
     wanted: &[String],
@@ -324,7 +343,7 @@ pub fn names(
     wanted.iter().map(find).collect()
 }
 
-/// Any continuous real variable, for names given from outside.
+/// The continuous Real variables with these names.
 ///
 /// # Errors
 /// As [`names`].

@@ -1,4 +1,7 @@
-//! Poles with the states that take part in them, and zeros.
+//! Poles of a linear model with the participation of its states, and its zeros.
+//!
+//! A [`StateSpace`] enters; [`Pole`]s and complex zeros leave, for the exports and figures. Matrices are scaled by the
+//! nominal values of the states before eigenvalues are computed.
 
 use super::StateSpace;
 use nalgebra::linalg::{Schur, balancing};
@@ -6,7 +9,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
-/// An eigenvalue of A; of a conjugate pair only the upper one.
+/// An eigenvalue of A; of a conjugate pair the one with positive imaginary part.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pole {
     /// Real part in 1/s.
@@ -15,30 +18,32 @@ pub struct Pole {
     pub im: f64,
     /// Undamped natural frequency in Hz.
     pub frequency: f64,
-    /// Damping ratio: 1 and more do not oscillate, below 0 it grows.
+    /// Damping ratio: from 1 on there is no oscillation, below 0 the motion grows.
     pub damping: f64,
-    /// States by how much they take part, largest first, with shares that add up to 1; those under 2 % are left out.
+    /// Participating states: index and share, largest share first. Shares add up to 1; those under 2 % are left out.
     pub participation: Vec<(usize, f64)>,
-    /// How many poles lie here with the same states in them, this one included: of several no state belongs to one
-    /// alone, and a motion of one form may grow with time before it decays.
+    /// How many poles coincide here with the same states, this one included.
+    ///
+    /// No state belongs to one of several coinciding poles alone, and their motion may grow with time before it decays.
     pub together: usize,
 }
 
-/// Eigenvalues this close, as a part of their size, count as one: of two that are equal but for rounding, a defect of
-/// the matrix may have driven the eighth digit apart.
+/// Eigenvalues closer than this, relative to their size, count as one. Rounding separates the eigenvalues of a
+/// defective matrix from about the eighth digit on.
 const COINCIDE: f64 = 1e-6;
 
-/// Shares below this are not worth telling.
+/// Smallest share of a state that is listed.
 const LEAST_SHARE: f64 = 0.02;
 
-/// Poles in the order of their magnitude. Empty where the eigenvalues cannot be found.
+/// Poles in the order of their magnitude; empty where the eigenvalue iteration fails.
 ///
-/// Participation of state k in mode i is |w_ki v_ki| with left and right eigenvectors. Source: I. J. Perez-Arriaga, G.
-/// C. Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117. States that act on each other in a circle have their
-/// poles for themselves: there the product is zero for all other states. So poles of different circles may coincide, as
-/// those of two integrators in a row do, and each still names its own states. Of poles that coincide within a circle no
-/// eigenvector belongs to one alone: each has the share of the states in what all of them span, the diagonal of the
-/// projector V (W'V)^-1 W'.
+/// The participation of state k in mode i is |w_ki v_ki| with left and right eigenvectors (I. J. Perez-Arriaga, G. C.
+/// Verghese, F. C. Schweppe, IEEE Trans. PAS-101 (1982) 3117).
+///
+/// Poles are computed for each strongly connected component of the states, because participation is zero outside of it.
+/// So poles of different components may coincide, as those of two integrators in a row do, and each keeps its own
+/// states. Where poles coincide within a component, eigenvectors are not unique. Each of them then gets the shares of
+/// the states in the common invariant subspace: the diagonal of the projector V (W'V)^-1 W'.
 pub fn poles(model: &StateSpace) -> Vec<Pole> {
     let a = scaled(model);
     let mut found: Vec<Pole> = circles(&a).iter().flat_map(|states| of_circle(&a, states)).collect();
@@ -46,7 +51,7 @@ pub fn poles(model: &StateSpace) -> Vec<Pole> {
     found
 }
 
-/// States that act on each other in circles, each group in the order of the states, by their first ones.
+/// The strongly connected components of the states, each ascending, ordered by their first states.
 fn circles(a: &DMatrix<f64>) -> Vec<Vec<usize>> {
     let n = a.nrows();
     let mut graph: DiGraph<(), ()> = DiGraph::with_capacity(n, n);
@@ -64,15 +69,16 @@ fn circles(a: &DMatrix<f64>) -> Vec<Vec<usize>> {
     all
 }
 
-/// The poles of states that act on each other in a circle.
+/// The poles of one strongly connected component.
 fn of_circle(a: &DMatrix<f64>, states: &[usize]) -> Vec<Pole> {
     let own = a.select_rows(states).select_columns(states);
     let mut open = eigenvalues(&own);
     let largest = open.iter().map(|l| l.norm()).fold(0.0, f64::max);
-    // rounding of integrators
+    // What rounding leaves of an integrator's zero.
     open.iter_mut().filter(|l| l.norm() <= 1e-14 * largest).for_each(|l| *l = Complex::new(0.0, 0.0));
     let all = open.clone();
     let mut found = Vec::new();
+    // Takes one cluster of coinciding eigenvalues after the other.
     while let Some(first) = open.first().copied() {
         let near = |o: &Complex<f64>| (o - first).norm() <= COINCIDE * first.norm();
         let (together, rest): (Vec<Complex<f64>>, Vec<Complex<f64>>) = open.into_iter().partition(near);
@@ -80,9 +86,10 @@ fn of_circle(a: &DMatrix<f64>, states: &[usize]) -> Vec<Pole> {
         let others = all.iter().filter(|o| !near(o));
         let mut centre = together.iter().sum::<Complex<f64>>() / together.len() as f64;
         if together.len() > 1 && centre.im.abs() <= COINCIDE * centre.norm() {
-            // real but for what the defect of the matrix has driven apart
+            // A defective real eigenvalue comes out as a complex pair by rounding.
             centre.im = 0.0;
         }
+        // The conjugate above it stands for both.
         if centre.im < 0.0 {
             continue;
         }
@@ -102,13 +109,13 @@ fn of_circle(a: &DMatrix<f64>, states: &[usize]) -> Vec<Pole> {
     found
 }
 
-/// A in units of the states' usual sizes.
+/// A in units of the states' nominal values.
 fn scaled(model: &StateSpace) -> DMatrix<f64> {
     let n = model.states.len();
     DMatrix::from_fn(n, n, |i, j| model.a[(i, j)] * model.states[j].nominal / model.states[i].nominal)
 }
 
-/// Eigenvalues; none where the iteration does not end.
+/// Eigenvalues by the real Schur form; empty where its iteration does not converge.
 pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     if a.is_empty() {
         return Vec::new();
@@ -119,9 +126,10 @@ pub(super) fn eigenvalues(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     schur.map_or_else(Vec::new, |s| s.complex_eigenvalues().iter().copied().collect())
 }
 
+/// Shares of the states in `count` eigenvalues at one place; `gap` is the distance to the nearest other one.
 fn participation(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64) -> Vec<(usize, f64)> {
     if count == a.nrows() {
-        // all states belong to it alike
+        // The invariant subspace is the entire space, so all states participate alike.
         return (0..count).map(|k| (k, 1.0 / count as f64)).collect();
     }
     let projector = projector(a, eigenvalue, count, gap);
@@ -129,31 +137,33 @@ fn participation(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: 
     let sum: f64 = all.sum();
     let mut shares: Vec<(usize, f64)> = all.iter().map(|s| s / sum).enumerate().collect();
     shares.retain(|s| s.1 >= LEAST_SHARE);
-    // equal ones in the order of the states, whatever rounding says
+    // Shares that are equal up to rounding keep the order of the states.
     let rank = |share: f64| (1e9 * share).round();
     shares.sort_by(|a, b| rank(b.1).total_cmp(&rank(a.1)).then(a.0.cmp(&b.0)));
     shares
 }
 
-/// On the space that belongs to so many eigenvalues at one place, along all others; the nearest of these is at a
-/// distance of `gap`.
+/// The spectral projector onto the invariant subspace of `count` eigenvalues at one place, along all others.
 fn projector(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64) -> Option<DMatrix<Complex<f64>>> {
     let right = invariant(a, eigenvalue, count, gap)?;
     let left = invariant(&a.transpose(), eigenvalue, count, gap)?.transpose();
     Some(&right * (&left * &right).try_inverse()? * left)
 }
 
-/// Part of the way to the next eigenvalue by which inverse iteration stands off: near enough to go there fast, and far
-/// enough that of a defective eigenvalue not only the one eigenvector is left in the digits.
+/// Distance of the shift of inverse iteration from the eigenvalue, as a share of the distance to the next one.
+///
+/// It is small enough to converge fast, and large enough that for a defective eigenvalue not only its single
+/// eigenvector is left in the digits.
 const STAND_OFF: f64 = 1e-5;
 
-/// A basis of the space of so many eigenvalues at one place, by inverse iteration from vectors that favour no state.
+/// An orthonormal basis of the invariant subspace, by inverse iteration; n by `count`. `None` where it fails.
 fn invariant(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64) -> Option<DMatrix<Complex<f64>>> {
     let n = a.nrows();
     let mut shifted = a.map(|v| Complex::new(v, 0.0));
     let shift = eigenvalue + Complex::new((STAND_OFF * gap).max(f64::MIN_POSITIVE), 0.0);
     (0..n).for_each(|k| shifted[(k, k)] -= shift);
     let lu = shifted.lu();
+    // The start vectors have a part in every state.
     let begin = |k: usize, j: usize| Complex::new(if k % count == j { 1.0 } else { 0.1 }, 0.1 * ((k + j) % 7) as f64);
     let mut basis = DMatrix::from_fn(n, count, begin);
     for _ in 0..4 {
@@ -166,16 +176,16 @@ fn invariant(a: &DMatrix<f64>, eigenvalue: Complex<f64>, count: usize, gap: f64)
     Some(basis)
 }
 
-/// Zeros of the way from one input to one output, in the order of their magnitude.
+/// Invariant zeros from one input to one output, in the order of their magnitude; conjugates are left out.
 ///
-/// With r derivatives of the output free of the input, they are the eigenvalues of A - b c A^r / (c A^(r-1) b) but for
-/// r at zero (the zero dynamics); with a direct path, of A - b c / d.
+/// With relative degree r they are the eigenvalues of A - b c A^r/(c A^(r-1) b), except for r at zero (the zero
+/// dynamics); with a direct path those of A - b c/d.
 pub fn zeros(model: &StateSpace, input: usize, output: usize) -> Vec<Complex<f64>> {
     let way = between(model, input, output);
     let n = way.len();
     let size = |k: usize| model.states[way[k]].nominal;
     let a = DMatrix::from_fn(n, n, |i, j| model.a[(way[i], way[j])] * size(j) / size(i));
-    // time in units of the fastest rate, so that powers of A stay of the order of 1
+    // Time is scaled by the fastest rate, so that powers of A stay of the order of 1.
     let rate = if a.is_empty() { 1.0 } else { a.amax().max(f64::MIN_POSITIVE) };
     let a = a / rate;
     let b = DVector::from_fn(n, |i, _| model.b[(way[i], input)] / size(i));
@@ -186,7 +196,9 @@ pub fn zeros(model: &StateSpace, input: usize, output: usize) -> Vec<Complex<f64
     }
     let mut order = 0;
     let mut gain = direct;
+    // Finds the relative degree: how many derivatives of the output do not depend on the input.
     while gain.abs() <= 1e-11 * row.amax() * b.amax() {
+        // The input never reaches the output.
         if order == n {
             return Vec::new();
         }
@@ -196,7 +208,7 @@ pub fn zeros(model: &StateSpace, input: usize, output: usize) -> Vec<Complex<f64
         order += 1;
         gain = (&row * &b)[0];
     }
-    // without a direct path the row has been multiplied once less than the gain's derivative has an order
+    // `row` is c A^(r-1); with a direct path it is c itself, which is not yet scaled by the rate.
     let next = if order == 0 { row / rate } else { &row * &a };
     let reduced = &a - &b * next / gain;
     let mut found = eigenvalues(&reduced);
@@ -206,7 +218,7 @@ pub fn zeros(model: &StateSpace, input: usize, output: usize) -> Vec<Complex<f64
     kept
 }
 
-/// The states that lie on a way from the input to the output.
+/// The states through which the input can reach the output. All others would give zeros that cancel with poles.
 fn between(model: &StateSpace, input: usize, output: usize) -> Vec<usize> {
     let n = model.states.len();
     let spread = |seed: &dyn Fn(usize) -> bool, edge: &dyn Fn(usize, usize) -> bool| {

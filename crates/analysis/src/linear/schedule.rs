@@ -1,9 +1,12 @@
-//! The quasi-linear form: x' = A(rho) x + B(rho) (u, 1), exact where the equations are affine in everything but rho.
+//! The quasi-linear parameter-varying form x' = A(rho) x + B(rho) (u, 1) over a grid of scheduling quantities rho.
 //!
-//! With the scheduling quantities fixed, x' = g(rho) + H(rho) z, where z are the other states and inputs and H is the
-//! exact Jacobian. g is shared out along a path from rho = 0, one quantity after the other, inputs first: the change of
-//! g on each leg over the quantity itself is its column (the secant, not the slope, so nothing is lost), and what is
-//! left at rho = 0 belongs to the constant input 1.
+//! A prepared model ([`LinearizationSetup::scheduled`]) and a state enter; a [`QuasiLpvModel`] leaves. The form is
+//! exact where the equations are affine in everything but rho.
+//!
+//! At fixed rho the rates are x' = g(rho) + H(rho) z, where z are the other states and inputs and H is the exact
+//! Jacobian. g is distributed along a path from rho = 0, one quantity after the other, inputs first. The change of g on
+//! a segment over the change of its quantity is the column of this quantity: a secant, not a slope, so that the sum
+//! over all columns reproduces g. What remains at rho = 0 belongs to the constant input 1.
 
 use super::{LinearizationSetup, Quantity, SchedulingSource};
 use crate::local::LocalEvaluator;
@@ -13,72 +16,80 @@ use bramah_syntax::diag::{Code, Diagnostic};
 use nalgebra::DMatrix;
 use serde_json::{Value, json};
 
-/// A model in quasi-linear form over a grid.
+/// A model of n states and m inputs in quasi-linear form over a grid.
 #[derive(Clone, Debug)]
 pub struct QuasiLpvModel {
-    /// The class.
+    /// The name of the model's class.
     pub class: String,
     /// Names of the scheduling quantities.
     pub rho: Vec<String>,
-    /// What each of them is a multiple of.
+    /// The state or input that each scheduling quantity is a multiple of.
     pub(super) legs: Vec<SchedulingCoordinate>,
     /// The states, with their values at the operating point.
     pub states: Vec<Quantity>,
-    /// The inputs; behind them stands the constant one.
+    /// The m inputs, without the constant one.
     pub inputs: Vec<Quantity>,
-    /// The values of each scheduling quantity, ascending.
+    /// For each scheduling quantity its values, ascending.
     pub grid: Vec<Vec<f64>>,
-    /// All combinations of them, the last quantity fastest.
+    /// The matrices at all combinations of these values; the last quantity changes fastest.
     pub points: Vec<LpvGridPoint>,
-    /// Per state the largest difference between A x + B u and the rate, over the largest term of the row, at random
-    /// states and inputs: at most about 1e-12 where the form is exact.
+    /// For each state the largest difference between A x + B u and its rate at random states and inputs, relative to
+    /// the largest term of the row. Up to about 1e-12 where the form is exact.
     pub error: Vec<f64>,
-    /// How many random states were tried.
+    /// Number of random points at which the model has a value.
     pub tried: usize,
 }
 
-/// The matrices at one point.
+/// The matrices at one point of the grid.
 #[derive(Clone, Debug)]
 pub struct LpvGridPoint {
     /// Values of the scheduling quantities.
     pub rho: Vec<f64>,
-    /// By states and states.
+    /// n by n.
     pub a: DMatrix<f64>,
-    /// By states and inputs, the constant one last.
+    /// n by (m + 1); the last column belongs to the constant input 1.
     pub b: DMatrix<f64>,
 }
 
-/// A scheduling quantity: `factor * (w - origin)` of a state or input w.
+/// A scheduling quantity as a multiple of one state or input w: `factor * (w - origin)`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SchedulingCoordinate {
-    /// Among states, then inputs.
+    /// The place of w among states, then parameters and inputs.
     pub column: usize,
+    /// d rho/d w.
     pub factor: f64,
+    /// The value of w at rho = 0.
     pub origin: f64,
 }
 
-/// Evaluates the rates over states and inputs together.
+/// Rates as a function of w: states, then parameters, then inputs.
 struct VectorField {
+    /// The model, evaluated point by point.
     local: LocalEvaluator,
+    /// Time of the operating point in seconds.
     time: f64,
+    /// Number of states.
     states: usize,
+    /// Number of parameters.
     parameters: usize,
 }
 
 impl VectorField {
+    /// The parts of w: states, parameters, inputs.
     fn split<'w>(&self, w: &'w [f64]) -> (&'w [f64], &'w [f64], &'w [f64]) {
         let (x, rest) = w.split_at(self.states);
         let (theta, u) = rest.split_at(self.parameters);
         (x, theta, u)
     }
 
+    /// The rates at w; `None` where the equations have no solution.
     fn rates(&mut self, w: &[f64]) -> Option<Vec<f64>> {
         let (x, theta, u) = self.split(w);
         self.local.evaluate(self.time, x, theta, u).ok()?;
         Some(self.local.rates.clone())
     }
 
-    /// Rates and their derivatives by all of w.
+    /// The rates and their derivatives by all of w; `None` where the equations have no solution.
     fn slopes(&mut self, w: &[f64]) -> Option<(Vec<f64>, DMatrix<f64>)> {
         let (x, theta, u) = self.split(w);
         self.local.linearize(self.time, x, theta, u).ok()?;
@@ -95,9 +106,11 @@ impl VectorField {
     }
 }
 
-/// Builds the form of `chosen`, which was made by [`LinearizationSetup::scheduled`], around a state. `grid` holds the
-/// values of each scheduling quantity, or nothing for five over its range. `ranges` are the smallest and largest values
-/// of [`LinearizationSetup::quantities`], for the random check.
+/// Builds the quasi-linear form of `chosen` around a state.
+///
+/// `chosen` comes from [`LinearizationSetup::scheduled`]. `grid` holds the values of each scheduling quantity, or
+/// `None` for five over its range. `ranges` holds the smallest and largest values of
+/// [`LinearizationSetup::quantities`], for the check at random points.
 ///
 /// # Errors
 /// [`Code::BadArgument`] when a scheduling quantity is not affine in one state or input, or where the equations have no
@@ -123,6 +136,7 @@ pub fn schedule(
     let mut grid: Vec<Vec<f64>> = legs.iter().zip(grid).map(|(l, g)| g.clone().unwrap_or_else(|| even(l))).collect();
     for values in &mut grid {
         values.sort_by(f64::total_cmp);
+        // Equal values would make cells of width zero, over which nothing can be interpolated.
         values.dedup();
     }
     let mut points = Vec::new();
@@ -140,17 +154,22 @@ pub fn schedule(
     Ok(QuasiLpvModel { class, rho, legs, states, inputs, grid, points, error, tried })
 }
 
+/// The message that the equations have no value on the grid.
 fn no_value(why: &str) -> Diagnostic {
     Diagnostic::new(Code::BadArgument, format!("the equations have no value on the grid: {why}"))
 }
 
+/// A point of the grid as text.
 fn shown(names: &[String], values: &[f64]) -> String {
     let all: Vec<String> =
         names.iter().zip(values).map(|(n, v)| format!("{n} = {}", bramah_results::number::rounded(*v, 6))).collect();
     all.join(", ")
 }
 
-/// The state or input that each scheduling quantity is a multiple of.
+/// Finds for each scheduling quantity the state or input that it is a multiple of.
+///
+/// # Errors
+/// [`Code::BadArgument`] where it depends on several of them or not linearly.
 fn legs(
     field: &mut VectorField,
     w0: &[f64],
@@ -158,6 +177,7 @@ fn legs(
     chosen: &LinearizationSetup,
 ) -> Result<Vec<SchedulingCoordinate>, Diagnostic> {
     let mut seen = Vec::new();
+    // A coefficient that agrees at two points off the operating point is taken as constant.
     for part in [0.3, 0.62] {
         let w: Vec<f64> = w0.iter().zip(ranges).map(|(w, (low, high))| w + part * 0.2 * (high - low)).collect();
         field.slopes(&w).ok_or_else(|| no_value("near the operating point"))?;
@@ -178,7 +198,8 @@ fn legs(
     legs.collect()
 }
 
-/// An output that is affine in one quantity alone: its derivatives are the same at two points.
+/// The coordinate of output `k`; `None` where it depends on several quantities, or with another coefficient at the
+/// second point.
 fn leg(seen: &[(Vec<f64>, Vec<(Vec<f64>, f64)>)], k: usize) -> Option<SchedulingCoordinate> {
     let [(w, first), (_, second)] = seen else { return None };
     let ((row, value), (again, _)) = (&first[k], &second[k]);
@@ -192,7 +213,7 @@ fn leg(seen: &[(Vec<f64>, Vec<(Vec<f64>, f64)>)], k: usize) -> Option<Scheduling
     })
 }
 
-/// All combinations, the last quantity fastest.
+/// All combinations of values; the last quantity changes fastest.
 fn products(grid: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::new()];
     for values in grid {
@@ -201,7 +222,8 @@ fn products(grid: &[Vec<f64>]) -> Vec<Vec<f64>> {
     all
 }
 
-/// A and B at values of the scheduling quantities; other quantities enter through exact derivatives at `w0`.
+/// A and B at values of the scheduling quantities, the other quantities being at `w0`. `None` where the equations have
+/// no value there.
 fn factorised(
     field: &mut VectorField,
     legs: &[SchedulingCoordinate],
@@ -215,10 +237,10 @@ fn factorised(
     let scheduled = |j: usize| legs.iter().any(|l| l.column == j);
     let (_, slopes) = field.slopes(&w)?;
     let mut all = slopes.clone();
-    // inputs first: a command of zero may be the one value that the equations do not take
+    // Inputs first: a command of zero may be the one value at which the equations cannot be evaluated.
     let mut order: Vec<usize> = (0..legs.len()).collect();
     order.sort_by_key(|&k| std::cmp::Reverse(legs[k].column));
-    // g along the path, from its end back to rho = 0
+    // The path is walked from its end back to rho = 0.
     let mut constant = vec![0.0; n];
     let mut here = free_part(field, &w, w0, &scheduled)?;
     for (at, &k) in order.iter().enumerate().rev() {
@@ -228,13 +250,15 @@ fn factorised(
         before[leg.column] = leg.origin;
         let there = free_part(field, &before, w0, &scheduled);
         let Some(there) = there else {
-            // what cannot be followed to zero stays with the constant input
+            // A segment that cannot be evaluated stays with the constant input, and so do those before it.
             order[..=at].iter().for_each(|&k| all.column_mut(legs[k].column).fill(0.0));
             break;
         };
+        // At rho = 0 the secant is 0/0; the slope from `slopes` stays.
         if step != 0.0 {
             (0..n).for_each(|i| all[(i, leg.column)] = (here[i] - there[i]) / step);
         }
+        // The column multiplies w, not w - origin: the offset goes to the constant input.
         (0..n).for_each(|i| constant[i] -= all[(i, leg.column)] * leg.origin);
         w = before;
         here = there;
@@ -246,17 +270,19 @@ fn factorised(
     Some((a, b))
 }
 
-/// g: the rates without the part that is linear in what does not schedule.
+/// g: the rates minus the part that is linear in what does not schedule.
 fn free_part(field: &mut VectorField, w: &[f64], w0: &[f64], scheduled: &dyn Fn(usize) -> bool) -> Option<Vec<f64>> {
     let (rates, slopes) = field.slopes(w)?;
     let rest = |i: usize| (0..w.len()).filter(|&j| !scheduled(j)).map(|j| slopes[(i, j)] * w0[j]).sum::<f64>();
     Some((0..rates.len()).map(|i| rates[i] - rest(i)).collect())
 }
 
-/// Random points for the check.
+/// Number of random points of the check.
 const TRIES: usize = 200;
 
-/// Compares A x + B u with the rates at random states and inputs.
+/// Compares A x + B u with the rates at quasi-random states and inputs within `ranges`.
+///
+/// Returns the largest relative difference of each row, and at how many points the model had a value.
 fn check(
     field: &mut VectorField,
     legs: &[SchedulingCoordinate],
@@ -269,6 +295,7 @@ fn check(
     for k in 1..=TRIES {
         let w: Vec<f64> = ranges.iter().enumerate().map(|(j, (low, high))| low + halton(k, j) * (high - low)).collect();
         let rho: Vec<f64> = legs.iter().map(|l| l.factor * (w[l.column] - l.origin)).collect();
+        // Points without a solution, as beyond a physical limit, do not count.
         let (Some(rates), Some((a, b))) = (field.rates(&w), factorised(field, legs, w0, &rho)) else { continue };
         tried += 1;
         for i in 0..n {
@@ -281,10 +308,11 @@ fn check(
     (error, tried)
 }
 
-/// The k-th number of Halton's sequence in the j-th direction: spread evenly between 0 and 1.
+/// Coordinate `j` of point `k` of Halton's sequence, between 0 and 1.
 fn halton(k: usize, j: usize) -> f64 {
     const PRIMES: [usize; 16] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53];
     let base = PRIMES[j % PRIMES.len()];
+    // From 17 coordinates on bases repeat; an offset keeps two coordinates of one base apart.
     let mut index = k + j / PRIMES.len() * 409;
     let (mut value, mut digit) = (0.0, 1.0 / base as f64);
     while index > 0 {
@@ -296,12 +324,12 @@ fn halton(k: usize, j: usize) -> f64 {
 }
 
 impl QuasiLpvModel {
-    /// Whether the form is exact at all states tried.
+    /// Whether the form agrees with the model at all points tried.
     pub fn is_exact(&self) -> bool {
         self.tried > 0 && self.error.iter().all(|e| *e <= 1e-12)
     }
 
-    /// All matrices.
+    /// The whole form as JSON.
     pub fn json(&self) -> Value {
         let rows = |m: &DMatrix<f64>| m.row_iter().map(|r| r.iter().copied().collect::<Vec<f64>>()).collect::<Vec<_>>();
         let points: Vec<Value> =
@@ -316,7 +344,7 @@ impl QuasiLpvModel {
         })
     }
 
-    /// One line a point: the scheduling quantities, then the entries by rows.
+    /// One line for each point of the grid: the scheduling quantities, then A and B by rows.
     pub fn csv(&self) -> String {
         let entry = |letter: char, i: usize, j: usize| format!("\"{letter}[{},{}]\"", i + 1, j + 1);
         let (n, m) = (self.states.len(), self.inputs.len() + 1);
@@ -332,7 +360,7 @@ impl QuasiLpvModel {
         out
     }
 
-    /// What was found, in words.
+    /// Size and accuracy of the form as text.
     pub fn words(&self) -> String {
         let mut out = format!("quasi-linear form over ({}): {} points\n", self.rho.join(", "), self.points.len());
         let most = self.error.iter().fold(0.0f64, |m, e| m.max(*e));

@@ -1,4 +1,7 @@
-//! Files of a quasi-linear form: a Modelica model that simulates, a MATLAB file.
+//! Writes a quasi-linear form as a Modelica model and as a MATLAB file.
+//!
+//! A [`QuasiLpvModel`] enters; texts or bytes leave. The Modelica model interpolates the matrices by a function of its
+//! own, multilinearly over the cells of the grid.
 
 use super::schedule::{LpvGridPoint, QuasiLpvModel};
 use bramah_results::mat::write_matrix;
@@ -7,9 +10,11 @@ use nalgebra::DMatrix;
 use std::fmt::Write as _;
 
 impl QuasiLpvModel {
-    /// A MATLAB file of version 4: `rho` with a row for each point of the grid, `A` and `B` of all points side by side
-    /// (those of point k are `A(:, (k-1)*n+1 : k*n)` and `B(:, (k-1)*m+1 : k*m)`, the last column of `B` being that of
-    /// the constant input 1), and the operating point `x0`, `u0`.
+    /// A MATLAB file of version 4.
+    ///
+    /// It holds `rho` with a row for each point of the grid, and `A` and `B` of all points side by side: those of point
+    /// k are `A(:, (k-1)*n+1 : k*n)` and `B(:, (k-1)*m+1 : k*m)`, where m counts the constant input 1, the last column
+    /// of `B`. `x0` and `u0` are the operating point.
     pub fn mat(&self) -> Vec<u8> {
         let mut out = Vec::new();
         let mut put = |name: &str, rows: usize, values: &[f64]| {
@@ -29,9 +34,12 @@ impl QuasiLpvModel {
         out
     }
 
-    /// A Modelica model: states and inputs are the quantities themselves, the matrices are interpolated between the
-    /// points of the grid, linearly in each scheduling quantity, and go on beyond its ends.
+    /// A Modelica model whose states and inputs are the quantities themselves.
+    ///
+    /// Its matrices are interpolated between the points of the grid, linearly in each scheduling quantity, and
+    /// extrapolated beyond its ends.
     pub fn modelica(&self, name: &str) -> String {
+        // Only entries that are nonzero somewhere are tabulated.
         let entries = self.entries();
         let mut out = format!("model {name} \"{}, quasi-linear over ({})\"\n", self.class, self.rho.join(", "));
         out += &self.interpolation(&entries);
@@ -61,7 +69,7 @@ impl QuasiLpvModel {
         out
     }
 
-    /// The variable that stands for a column of (A, B): states, inputs, the constant one.
+    /// The Modelica name for a column of (A, B): a state, an input, or the constant 1.
     fn symbol(&self, column: usize) -> String {
         match column.checked_sub(self.states.len()) {
             None => format!("x_{}", column + 1),
@@ -70,16 +78,17 @@ impl QuasiLpvModel {
         }
     }
 
-    /// Rows and columns of (A, B) that hold something at a point.
+    /// Row and column of each entry of (A, B) that is nonzero at some point.
     fn entries(&self) -> Vec<(usize, usize)> {
         let columns = self.states.len() + self.inputs.len() + 1;
         let all = (0..self.states.len()).flat_map(|i| (0..columns).map(move |j| (i, j)));
         all.filter(|&(i, j)| self.points.iter().any(|p| entry(p, i, j) != 0.0)).collect()
     }
 
-    /// The function that interpolates the entries: the sum over the corners of the cell.
+    /// The Modelica function that interpolates the entries: a weighted sum over the corners of a cell.
     fn interpolation(&self, entries: &[(usize, usize)]) -> String {
         let (d, k) = (self.grid.len(), entries.len().max(1));
+        // A cell of d quantities has 2^d corners; bit a of a corner's number says on which side of quantity a it lies.
         let last = (1_usize << d) - 1;
         format!(
             "  function matrices \"Entries of A and B between the points of the grid\"
@@ -108,7 +117,7 @@ impl QuasiLpvModel {
         )
     }
 
-    /// The grid and the entries at its points.
+    /// Declarations of the grid and of the entries at its points.
     fn constants(&self, entries: &[(usize, usize)]) -> String {
         let numbers = |values: &mut dyn Iterator<Item = f64>| values.map(text).collect::<Vec<_>>().join(", ");
         let mut out = String::new();
@@ -132,12 +141,13 @@ impl QuasiLpvModel {
         out
     }
 
-    /// Finds the cell of the grid, and how far through it.
+    /// Statements that find the cell of a point, and its relative position in it.
     fn cells(&self) -> String {
         let mut out = String::new();
         for (a, values) in (1..).zip(&self.grid) {
             let _ = writeln!(out, "    cell[{a}] := 1;");
             if values.len() == 1 {
+                // A quantity with one value has no cell: its matrices are constant in it.
                 let _ = writeln!(out, "    part[{a}] := 0;");
                 continue;
             }
@@ -156,11 +166,13 @@ impl QuasiLpvModel {
     }
 }
 
+/// An entry of (A, B) at a point of the grid.
 fn entry(point: &LpvGridPoint, i: usize, j: usize) -> f64 {
     let n = point.a.ncols();
     if j < n { point.a[(i, j)] } else { point.b[(i, j - n)] }
 }
 
+/// `0` in place of an empty sum or list.
 fn or_zero(terms: String) -> String {
     if terms.is_empty() { "0".to_owned() } else { terms }
 }

@@ -1,24 +1,29 @@
-//! Exact derivatives at a point, by the system's own Jacobian and the implicit function theorem.
+//! Exact derivatives at a point: the entries of the system's Jacobian, sorted into A, B, C and D.
+//!
+//! Rows of the system are `der(x) - value` or implicit equations. The first kind gives derivatives directly; unknowns
+//! of the second kind are eliminated by the implicit function theorem, and rates that other rows read by one more
+//! solve.
 
 use super::plan::{LocalColumnRole, LocalRowTarget};
 use super::{LocalError, LocalEvaluator};
 use nalgebra::DMatrix;
 
-/// Derivatives at a point. Columns of `b` and `d`: parameters, then inputs.
+/// Derivatives at a point, for n states, m parameters, k inputs and p outputs. Columns of `b` and `d`: parameters, then
+/// inputs.
 #[derive(Clone, Debug)]
 pub struct Linearization {
-    /// d x' / d x, n by n.
+    /// d x'/d x, n by n.
     pub a: DMatrix<f64>,
-    /// d x' / d (theta, u), n by m + k.
+    /// d x'/d (theta, u), n by (m + k).
     pub b: DMatrix<f64>,
-    /// d y / d x, p by n.
+    /// d y/d x, p by n.
     pub c: DMatrix<f64>,
-    /// d y / d (theta, u), p by m + k.
+    /// d y/d (theta, u), p by (m + k).
     pub d: DMatrix<f64>,
 }
 
 impl Linearization {
-    /// An entry by its row (rates, then outputs) and column (states, then parameters and inputs).
+    /// An entry by its row (rates, then outputs) and its column (states, then parameters, then inputs).
     fn get(&self, row: usize, column: usize) -> f64 {
         let n = self.a.nrows();
         match (row < n, column < n) {
@@ -29,6 +34,7 @@ impl Linearization {
         }
     }
 
+    /// Sets an entry by row and column as [`Linearization::get`] counts them.
     fn set(&mut self, row: usize, column: usize, value: f64) {
         let n = self.a.nrows();
         match (row < n, column < n) {
@@ -41,7 +47,7 @@ impl Linearization {
 }
 
 impl LocalEvaluator {
-    /// Values and derivatives.
+    /// Computes `rates`, `outputs` and `linear`.
     ///
     /// # Errors
     /// [`LocalError`]; values and derivatives are then meaningless.
@@ -49,6 +55,7 @@ impl LocalEvaluator {
         self.evaluate(time, x, theta, u)?;
         let LocalEvaluator { plan, point, y, yp, entries, torn_entries, .. } = self;
         let system = &plan.system;
+        // The coefficient of d/d yp is 0 here and 1 below: the difference of both is the derivative by the rates.
         system.jacobian(time, 0.0, y, yp, &mut point.values, entries).map_err(|_| LocalError::NonFinite)?;
         let torn = plan.implicit.iter().any(|i| i.1);
         if torn || self.reads_rates {
@@ -61,7 +68,7 @@ impl LocalEvaluator {
         if self.reads_rates { self.through_rates() } else { Ok(()) }
     }
 
-    /// Adds what goes through the rates that others read: r = g(x, r) has d r/d x = (1 - d g/d r)^-1 d g/d x.
+    /// Adds what passes through rates that other rows read: r = g(x, r) has dr/dx = (1 - dg/dr)^-1 dg/dx.
     fn through_rates(&mut self) -> Result<(), LocalError> {
         let LocalEvaluator { plan, entries, torn_entries, linear, through_unknowns, .. } = self;
         let (n, p) = (plan.states.len(), plan.outputs.len());
@@ -83,15 +90,17 @@ impl LocalEvaluator {
         linear.b = own.solve(&linear.b).ok_or(LocalError::Singular)?;
         linear.c += read.rows(n, p) * &linear.a;
         linear.d += read.rows(n, p) * &linear.b;
-        // the next point begins with nothing of this one
+        // All entries may be nonzero now, so the next point has to clear all of them.
         let width = n + linear.b.ncols();
+        // All entries may be nonzero now, so the next point clears all of them.
         through_unknowns.clear();
         through_unknowns.extend((0..n + p).flat_map(|row| (0..width).map(move |column| (row, column))));
         Ok(())
     }
 
-    /// The explicit part: minus the entries of rows `der(x) - value`. What is not among them is 0 already, but for what
-    /// went through implicit unknowns the last time.
+    /// Copies the explicit part: minus the entries of rows `der(x) - value`.
+    ///
+    /// All other entries are zero already, except those that passed through implicit unknowns at the last point.
     fn scatter(&mut self) {
         let LocalEvaluator { plan, entries, linear, through_unknowns, .. } = self;
         through_unknowns.drain(..).for_each(|(row, column)| linear.set(row, column, 0.0));
@@ -114,14 +123,17 @@ impl LocalEvaluator {
         }
     }
 
-    /// Adds what goes through the implicit unknowns.
+    /// Adds what passes through the implicit unknowns.
+    ///
+    /// F(w, q) = 0 gives dq/dw = -(dF/dq)^-1 dF/dw; `unknown` is dF/dq, `known` dF/dw for the independent quantities w
+    /// that implicit equations read.
     fn eliminate(&mut self, torn: bool) -> Result<(), LocalError> {
         let LocalEvaluator { plan, entries, torn_entries, linear, through_unknowns, .. } = self;
         let (n, p, q) = (plan.states.len(), plan.outputs.len(), plan.implicit.len());
         let rows = &plan.implicit_row;
         let mut unknown = DMatrix::zeros(q, q);
         let mut known = DMatrix::zeros(q, plan.reached.len());
-        // how rates and outputs depend on the unknowns
+        // Derivatives of rates and outputs by the unknowns.
         let mut through = DMatrix::zeros(n + p, q);
         let pattern = &plan.system.pattern;
         let mut implicit_of = vec![None; plan.system.columns.len()];
@@ -152,7 +164,7 @@ impl LocalEvaluator {
                     let value = torn_entries[k] - entries[k];
                     match (rows[row], target) {
                         (Some(i), _) => unknown[(i, j)] += value,
-                        // the rate of a state that is not torn, read by another row
+                        // Another row reads this implicit rate.
                         (None, Some(t)) => through[(t, j)] -= value,
                         (None, None) => {}
                     }
@@ -173,6 +185,7 @@ impl LocalEvaluator {
             if torn && let LocalColumnRole::State(k) = plan.roles[column] {
                 for (place, &j) in plan.reached.iter().enumerate() {
                     finite &= solution[(i, place)].is_finite();
+                    // An implicit rate is an unknown itself, so its derivatives are the solution.
                     linear.set(k, j, -solution[(i, place)]);
                     through_unknowns.push((k, j));
                 }

@@ -1,16 +1,22 @@
-//! Implicit unknowns by Newton's method, rates that read each other.
+//! Newton's method for the implicit unknowns of a point, and passes over rates that read each other.
+//!
+//! Values of states, parameters and inputs enter through `y`; solved unknowns and rates leave in `y` and `yp`. The
+//! iteration starts at the last point. Where it does not converge, `LocalEvaluator` uses the solver of whole runs.
 
 use super::LocalError;
 use super::plan::EvaluationPlan;
 use nalgebra::{DMatrix, DVector};
 
-/// Iterations of Newton's method on the implicit unknowns.
+/// Largest number of iterations.
 const NEWTON: usize = 12;
-/// Residuals and corrections are rounding below this part of what they began with.
+/// Residuals below this share of the first one, and corrections below this share of their unknowns, are rounding.
 const CONVERGED: f64 = 1e-11;
 
 impl EvaluationPlan {
-    /// Solves for the implicit unknowns from their last values, and for all rates; false where that does not converge.
+    /// Solves for the implicit unknowns from their last values, and for all explicit rates.
+    ///
+    /// `y`, `yp` and `values` are updated; `residual`, `entries` and `torn_entries` are buffers. False where the
+    /// iteration does not converge.
     pub(super) fn newton(
         &self,
         time: f64,
@@ -23,17 +29,18 @@ impl EvaluationPlan {
     ) -> Result<bool, LocalError> {
         let system = &self.system;
         let mut first = 0.0;
-        // a rate is what is left of its row at rate 0: from another rate, far larger, only its rounding would be left
+        // The rate of an explicit row is its residual at rate 0. From a much larger rate only rounding would remain.
         self.explicit.iter().for_each(|&j| yp[j] = 0.0);
         for iteration in 0..NEWTON {
             if system.residual(time, y, yp, values, residual).is_err() {
+                // Without unknowns there is nothing to search for, so the failure is final.
                 return if self.implicit.is_empty() { Err(LocalError::NonFinite) } else { Ok(false) };
             }
             for &j in &self.explicit {
                 yp[j] -= residual[j];
             }
             let size = self.implicit.iter().map(|i| residual[i.0].abs()).fold(0.0, f64::max);
-            // residuals at the level of rounding: of the first ones, or of the unknowns' own contributions
+            // Residuals have fallen to rounding.
             if self.implicit.is_empty() || size == 0.0 || iteration > 0 && size <= CONVERGED * first {
                 return Ok(true);
             }
@@ -50,7 +57,7 @@ impl EvaluationPlan {
                 moved = moved.max(d.abs() / (unknown.abs() + f64::MIN_POSITIVE));
             }
             if moved < CONVERGED {
-                // the residual can shrink no further: it is rounding
+                // The corrections are rounding, so the residual cannot shrink further.
                 if system.residual(time, y, yp, values, residual).is_err() {
                     return Ok(false);
                 }
@@ -63,7 +70,7 @@ impl EvaluationPlan {
         Ok(false)
     }
 
-    /// Rates that read other rates, which follow from each other one after the other.
+    /// Evaluates explicit rows repeatedly, until rates that read other rates agree with them.
     pub(super) fn settle_rates(
         &self,
         time: f64,
@@ -72,6 +79,7 @@ impl EvaluationPlan {
         residual: &mut [f64],
         values: &mut [f64],
     ) -> Result<(), LocalError> {
+        // A chain of rates needs at most one pass for each of them.
         for _ in 0..self.explicit.len() {
             self.system.residual(time, y, yp, values, residual).map_err(|_| LocalError::NonFinite)?;
             let settled = self.explicit.iter().all(|&j| residual[j].abs() <= CONVERGED * yp[j].abs());
@@ -83,6 +91,7 @@ impl EvaluationPlan {
         Ok(())
     }
 
+    /// The Newton step of the implicit unknowns: the solution of their own rows and columns of the Jacobian.
     fn correction(
         &self,
         time: f64,
@@ -105,6 +114,7 @@ impl EvaluationPlan {
         for (j, &(column, torn)) in self.implicit.iter().enumerate() {
             for k in pattern.colptr[column]..pattern.colptr[column + 1] {
                 if let Some(i) = self.implicit_row[pattern.rowidx[k]] {
+                    // For an unknown rate the derivative by yp counts, which is the difference of both Jacobians.
                     matrix[(i, j)] = if torn { torn_entries[k] - entries[k] } else { entries[k] };
                 }
             }

@@ -1,5 +1,8 @@
-//! What of a lifted system is a state, a parameter, an input, an output, and which unknowns follow from implicit
-//! equations.
+//! The structure of a lifted system: which of its columns are states, parameters, inputs and outputs, and which
+//! unknowns follow from implicit equations.
+//!
+//! A [`StateAugmentedModel`] enters; an [`EvaluationPlan`] leaves, which evaluators in all threads share. Explicit rows
+//! have the form `der(x) - value`; all others are implicit.
 
 use crate::lift::{AugmentedState, StateAugmentedModel};
 use bramah_expr::VarId;
@@ -8,66 +11,78 @@ use bramah_solve::lower::{ExecutableSystem, LoweringOptions, ResidualRowKind, lo
 use bramah_syntax::diag::{Code, Diagnostic};
 use std::sync::Arc;
 
-/// What is evaluated: n states x, m parameters theta, k inputs u, p outputs y.
+/// The equations of n states x, m parameters theta, k inputs u and p outputs y, ready for evaluation.
 #[derive(Clone, Debug)]
 pub struct EvaluationPlan {
-    /// The lifted system; shared by all threads.
+    /// The lifted system, compiled.
     pub system: Arc<ExecutableSystem>,
-    /// Columns of the system that are states of the model, and their variables.
+    /// The column and the variable of each state of the model.
     pub(super) states: Vec<(usize, VarId)>,
-    /// Parameters, then inputs.
+    /// The columns of parameters, then of inputs.
     pub(super) raised: Vec<AugmentedColumn>,
     /// How many of `raised` are parameters.
     pub(super) parameters: usize,
     /// Columns whose derivatives are the outputs.
     pub(super) outputs: Vec<usize>,
-    /// Unknowns that are not explicit: algebraic columns (false) and columns whose derivative is torn (true).
+    /// Implicit unknowns: algebraic columns (false), and columns whose rate is the unknown (true).
     pub(super) implicit: Vec<(usize, bool)>,
-    /// Per row, which implicit unknown it belongs to.
+    /// For each row the implicit unknown that it determines; `None` for explicit rows.
     pub(super) implicit_row: Vec<Option<usize>>,
-    /// Independent quantities (states, then parameters and inputs) that implicit equations read, and for each
-    /// independent quantity its place among them.
+    /// Independent quantities (states, then parameters and inputs) that implicit equations read.
     pub(super) reached: Vec<usize>,
+    /// For each independent quantity its place in `reached`; `usize::MAX` where it is not there.
     pub(super) reached_place: Vec<usize>,
-    /// Rows `der(x) - value`.
+    /// Explicit rows.
     pub(super) explicit: Vec<usize>,
-    /// Per row, what it computes.
+    /// What each row computes.
     pub(super) targets: Vec<LocalRowTarget>,
-    /// What each entry of the system's Jacobian means.
+    /// What each column is.
     pub(super) roles: Vec<LocalColumnRole>,
-    /// There are discrete variables: values need the event blocks.
+    /// Whether there are discrete variables, whose values need the equations at events.
     pub(super) discrete: bool,
 }
 
+/// A parameter or input that became a state.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AugmentedColumn {
+    /// Its column in the system.
     pub(super) column: usize,
+    /// Whether the column is an alias with the opposite sign.
     pub(super) negated: bool,
+    /// The parameter that holds its value at the start.
     pub(super) start: VarId,
 }
 
-/// Where a column stands among the independent and implicit quantities.
+/// What a column of the system is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum LocalColumnRole {
+    /// The state with this index.
     State(usize),
+    /// The parameter or input with this index.
     Raised(usize),
+    /// The algebraic unknown with this index.
     Implicit(usize),
+    /// None of these, as the integral of an output.
     Nothing,
 }
 
-/// What a row computes.
+/// What a row of the system computes.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum LocalRowTarget {
+    /// The rate of the state with this index.
     Rate(usize),
+    /// The output with this index.
     Output(usize),
+    /// Neither, as an implicit equation.
     Other,
 }
 
 impl EvaluationPlan {
-    /// Analyses and lowers a lifted model.
+    /// Analyses and compiles a lifted model.
     ///
     /// # Errors
-    /// The diagnostics of the structural analysis.
+    /// The diagnostics of the structural analysis; [`Code::Unsupported`] for a delay; [`Code::IndexReduction`] where a
+    /// constraint binds a lifted quantity to states.
     pub fn new(lifted: &StateAugmentedModel) -> Result<EvaluationPlan, Vec<Diagnostic>> {
         let checked = structure::analyze(&lifted.flat, &StateChoice::default());
         let Some(dae) = checked.value else { return Err(checked.diagnostics) };
@@ -82,6 +97,7 @@ impl EvaluationPlan {
         Ok(EvaluationPlan::of(system.clone(), lifted, raised, outputs))
     }
 
+    /// Sorts columns and rows by what they are.
     fn of(
         system: Arc<ExecutableSystem>,
         lifted: &StateAugmentedModel,
@@ -146,12 +162,12 @@ impl EvaluationPlan {
         }
     }
 
-    /// How many unknowns follow from implicit equations.
+    /// Number of implicit unknowns.
     pub fn implicit(&self) -> usize {
         self.implicit.len()
     }
 
-    /// Names of the unknowns of implicit equations.
+    /// Names of the implicit unknowns.
     pub fn implicit_names(&self) -> Vec<String> {
         let name = |&(column, torn): &(usize, bool)| {
             let variable = &self.system.dae.variables[self.system.columns[column].variable.index()].name;
@@ -160,12 +176,12 @@ impl EvaluationPlan {
         self.implicit.iter().map(name).collect()
     }
 
-    /// How many states.
+    /// Number of states.
     pub fn states(&self) -> usize {
         self.states.len()
     }
 
-    /// The states' variables.
+    /// The variables of the states.
     pub fn state_variables(&self) -> impl Iterator<Item = VarId> {
         self.states.iter().map(|s| s.1)
     }
@@ -175,12 +191,12 @@ impl EvaluationPlan {
         self.system.dae.variables[self.states[state].1.index()].unit.as_deref()
     }
 
-    /// Whether the model says that a state begins at its start value.
+    /// Whether a state starts at its start value (`fixed = true`).
     pub fn state_is_fixed(&self, state: usize) -> bool {
         self.system.dae.variables[self.states[state].1.index()].fixed
     }
 
-    /// Pairs of states of which the first one's rate reads the second one directly.
+    /// Pairs (i, j) of states where the rate of i reads j directly.
     pub fn couplings(&self) -> impl Iterator<Item = (usize, usize)> {
         let pattern = &self.system.pattern;
         self.roles.iter().enumerate().flat_map(move |(column, role)| {
@@ -192,22 +208,22 @@ impl EvaluationPlan {
         })
     }
 
-    /// How many parameters.
+    /// Number of parameters.
     pub fn parameters(&self) -> usize {
         self.parameters
     }
 
-    /// How many inputs.
+    /// Number of inputs.
     pub fn inputs(&self) -> usize {
         self.raised.len() - self.parameters
     }
 
-    /// How many outputs.
+    /// Number of outputs.
     pub fn outputs(&self) -> usize {
         self.outputs.len()
     }
 
-    /// The values of the chosen parameters as the model gives them, SI.
+    /// The values of the parameters as the model gives them, in SI units.
     pub fn parameter_values(&self) -> Vec<f64> {
         let mut values = self.system.layout.values();
         self.system.evaluate_parameters(&mut values, &[]);
@@ -215,12 +231,13 @@ impl EvaluationPlan {
     }
 }
 
+/// The column of a lifted quantity; `None` where a constraint took it from the states.
 fn place(system: &ExecutableSystem, raised: &AugmentedState) -> Option<AugmentedColumn> {
     let (column, negated) = column(system, raised.state)?;
     Some(AugmentedColumn { column, negated, start: raised.start })
 }
 
-/// What is delayed is a state of its own at every moment of the delay: no finite number of states says it.
+/// The error for a delay, whose memory is no finite number of states.
 fn delayed(dae: &structure::Dae, delay: &structure::DelayInput) -> Diagnostic {
     let name = &dae.variables[delay.variable.index()].name;
     let text = format!("`{name}` has no finite number of states");
@@ -228,7 +245,7 @@ fn delayed(dae: &structure::Dae, delay: &structure::DelayInput) -> Diagnostic {
     d.help("put `Signal.PadeDelay` in its place, which has as many states as its order")
 }
 
-/// A constraint lets states vary by themselves only together with a parameter.
+/// The error for a quantity that a constraint binds to states, so that it cannot vary alone.
 fn bound(system: &ExecutableSystem, v: VarId) -> Diagnostic {
     let name = &system.dae.variables[v.index()].name;
     let name = name.split(" (").next().unwrap_or(name);
@@ -236,7 +253,8 @@ fn bound(system: &ExecutableSystem, v: VarId) -> Diagnostic {
         .help("keep it as it is, or join the parts by something elastic")
 }
 
-/// The column of a state that may be an alias of another; `None` where a constraint took it from the states.
+/// The column of a state, and whether it is an alias with the opposite sign. `None` where a constraint took it from the
+/// states.
 fn column(system: &ExecutableSystem, v: VarId) -> Option<(usize, bool)> {
     let alias = system.dae.aliases.iter().find(|a| a.variable == v);
     let (target, negated) = alias.map_or((v, false), |a| (a.target, a.negated));

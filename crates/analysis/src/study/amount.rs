@@ -1,15 +1,18 @@
-//! Amounts as data sheets state them: `3 %`, `0.5 bar`, or a plain number.
+//! Amounts as data sheets state them: `3 %`, `0.5 bar` or a plain number.
+//!
+//! Texts and numbers of a study or sweep enter; values in the unit of a variable leave. Temperatures need care: `2
+//! degC` is 275.15 K as a value, but 2 K as a difference.
 
 use bramah_expr::units::{MeasurementUnit, quantity};
 use bramah_results::number;
 use std::fmt;
 
-/// An amount of a quantity whose unit is known elsewhere.
+/// An amount of a quantity whose unit is known from the context.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Amount {
-    /// A part of something: 0.03 for `3 %`.
+    /// A share of something else: 0.03 for `3 %`.
     Part(f64),
-    /// A value, in a unit of its own or in that of the quantity.
+    /// A value in the unit given, or without one in the unit of the quantity.
     Value(f64, Option<String>),
 }
 
@@ -37,18 +40,19 @@ impl Amount {
         if !value.is_finite() {
             return Err(format!("`{text}` is not finite"));
         }
+        // The unit is kept as written, for messages and for the later conversion.
         let written = text.trim().trim_start_matches(|c: char| c.is_ascii_digit() || "+-.eE".contains(c)).trim();
         Ok(Amount::Value(value, unit.map(|_| written.to_owned())))
     }
 
-    /// The number in it, as written.
+    /// The number without its unit; 0.03 for `3 %`.
     pub fn number(&self) -> f64 {
         match self {
             Amount::Part(x) | Amount::Value(x, _) => *x,
         }
     }
 
-    /// As a value in `unit`; a part is taken of `whole`.
+    /// The amount as a value in `unit`; a share is taken of `whole`.
     ///
     /// # Errors
     /// A sentence where its unit cannot be converted.
@@ -60,7 +64,7 @@ impl Amount {
         }
     }
 
-    /// As a difference in `unit`: zero points of temperatures do not count.
+    /// The amount as a difference in `unit`: offsets of temperature scales do not count.
     ///
     /// # Errors
     /// As [`Amount::in_unit`].
@@ -72,6 +76,7 @@ impl Amount {
     }
 }
 
+/// Converts a value between two units; `difference` leaves out offsets of temperature scales.
 fn convert(own: &str, unit: &str, value: f64, difference: bool) -> Result<f64, String> {
     let from = MeasurementUnit::parse(own).map_err(|e| e.to_string())?.meant(difference);
     let to = MeasurementUnit::parse(unit).map_err(|e| e.to_string())?.meant(difference);

@@ -1,4 +1,7 @@
-//! The names of a study tied to the variables of a model.
+//! Resolves the names of a study in a compiled model.
+//!
+//! A [`Study`] and a [`FlatModel`] enter; a [`BoundStudy`] leaves, whose entries hold variables and values in their
+//! units. All mistakes are collected before it fails, so that a user sees them at once.
 
 use super::table::at;
 use super::{Amount, InputColumn, ParameterEntry, RecordingFile, SignalColumn, Study};
@@ -9,21 +12,22 @@ use bramah_solve::Interpolation;
 use bramah_syntax::diag::{Code, Diagnostic, Span, StageResult, nearest};
 use std::path::PathBuf;
 
-/// A study whose names are variables of a model.
+/// A study whose names are resolved in a model.
 #[derive(Clone, Debug)]
 pub struct BoundStudy {
-    /// The driven inputs.
+    /// The driven inputs, in the order of the study.
     pub inputs: Vec<BoundInput>,
-    /// The measured signals.
+    /// The measured signals, in the order of the study.
     pub signals: Vec<BoundSignal>,
-    /// The parameters the study speaks of.
+    /// The parameters listed, in the order of the study.
     pub parameters: Vec<BoundParameter>,
-    /// The folder of the study, for recordings where no other is given.
+    /// The folder of the study, which recordings are relative to by default.
     pub(super) folder: PathBuf,
+    /// The recordings, not yet read.
     pub(super) recordings: Vec<RecordingFile>,
 }
 
-/// An input and its column.
+/// An input with the column that drives it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundInput {
     /// The model's input.
@@ -32,15 +36,15 @@ pub struct BoundInput {
     pub name: String,
     /// Its unit; empty where it has none.
     pub unit: String,
-    /// It is a difference of temperatures.
+    /// Whether it is a temperature difference, which converts without offset.
     pub difference: bool,
-    /// Between samples.
+    /// How values between samples are interpolated.
     pub interpolation: Interpolation,
     /// The entry of the study.
     pub entry: InputColumn,
 }
 
-/// A signal and its column.
+/// A measured variable with its column.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundSignal {
     /// The name that reports use.
@@ -49,18 +53,18 @@ pub struct BoundSignal {
     pub variable: VarId,
     /// The variable's unit; empty where it has none.
     pub unit: String,
-    /// It is a difference of temperatures.
+    /// Whether it is a temperature difference, which converts without offset.
     pub difference: bool,
-    /// The sensor's range in the variable's unit, where the study says it.
+    /// The sensor's range in the variable's unit; `None` where the study does not state it.
     pub full_scale: Option<f64>,
-    /// One standard deviation of the sensor: of the full scale, or in the variable's unit.
+    /// One standard deviation of the sensor: a share of the full scale, or a value in the variable's unit.
     pub accuracy: Option<Amount>,
     /// The entry of the study.
     pub entry: SignalColumn,
 }
 
 impl BoundSignal {
-    /// One standard deviation in the variable's unit, where the study says it.
+    /// One standard deviation in the variable's unit; `None` where the study does not state it.
     pub fn deviation(&self, full_scale: f64) -> Option<f64> {
         match self.accuracy {
             Some(Amount::Part(part)) => Some(part * full_scale),
@@ -70,20 +74,20 @@ impl BoundSignal {
     }
 }
 
-/// What a data sheet says about a parameter.
+/// How well a parameter is known before the fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DataSheetTolerance {
-    /// It is never moved.
+    /// It is never changed.
     Exact,
-    /// One standard deviation as part of the value; log-normal where the value is positive.
+    /// One standard deviation relative to the value; log-normal where the value is positive.
     Relative(f64),
     /// One standard deviation in the parameter's unit.
     Absolute(f64),
-    /// Nothing but its bounds.
+    /// Only its bounds are known.
     Free,
 }
 
-/// A parameter of the study.
+/// A parameter with its tolerance and bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundParameter {
     /// The model's parameter.
@@ -92,22 +96,22 @@ pub struct BoundParameter {
     pub name: String,
     /// Its unit; empty where it has none.
     pub unit: String,
-    /// How well it is known.
+    /// Its tolerance.
     pub knowledge: DataSheetTolerance,
-    /// Lower bound in its unit.
+    /// Lower bound in its unit; `None` for that of the model.
     pub min: Option<f64>,
-    /// Upper bound in its unit.
+    /// Upper bound in its unit; `None` for that of the model.
     pub max: Option<f64>,
     /// Where the study speaks of it.
     pub span: Span,
 }
 
 impl Study {
-    /// Ties the study to a model.
+    /// Resolves the study in a model.
     ///
     /// # Errors
     /// [`Code::BadStudy`]: names that the model does not have, units that cannot be converted, parameters that cannot
-    /// be moved, bounds in the wrong order, inputs without a column or value.
+    /// be changed, bounds in the wrong order, inputs without a column or value.
     pub fn bind(&self, model: &FlatModel) -> StageResult<BoundStudy> {
         let mut binder = StudyBinder { model, diagnostics: Vec::new() };
         let bound = BoundStudy {
@@ -126,17 +130,20 @@ impl Study {
     }
 }
 
+/// Resolves entries one by one and collects their mistakes.
 struct StudyBinder<'a> {
     model: &'a FlatModel,
     diagnostics: Vec<Diagnostic>,
 }
 
 impl<'a> StudyBinder<'a> {
+    /// Adds a mistake at a place of the study.
     fn report(&mut self, span: Span, message: impl Into<String>, label: impl Into<String>) {
         self.diagnostics.push(at(span, message, label));
     }
 
-    /// The variable of a name that `fits`, or a message with the nearest one that does.
+    /// The variable with a name. `fits` only selects the names that the message proposes; the caller checks the
+    /// variable.
     fn find(
         &mut self,
         span: Span,
@@ -160,6 +167,7 @@ impl<'a> StudyBinder<'a> {
         None
     }
 
+    /// An entry of `[inputs]`; `None` with a message where it does not fit.
     fn input(&mut self, entry: &InputColumn) -> Option<BoundInput> {
         let (variable, v) = self.find(entry.span, "input", &entry.name, |v| v.input)?;
         if !v.input {
@@ -168,12 +176,14 @@ impl<'a> StudyBinder<'a> {
         }
         let unit = v.unit.as_deref().unwrap_or("").to_owned();
         self.check_unit(entry.span, entry.unit.as_deref(), &unit, &entry.name)?;
+        // Integer and Boolean inputs have no values between samples.
         let held = entry.hold || v.ty != ScalarType::Real;
         let interpolation = if held { Interpolation::Held } else { Interpolation::Linear };
         let (name, difference) = (entry.name.clone(), v.difference);
         Some(BoundInput { variable, name, unit, difference, interpolation, entry: entry.clone() })
     }
 
+    /// An entry of `[signals]`; `None` with a message where it does not fit.
     fn signal(&mut self, entry: &SignalColumn) -> Option<BoundSignal> {
         let varies = |v: &FlatVariable| v.variability > Variability::Parameter;
         let (variable, v) = self.find(entry.span, "variable", &entry.variable, varies)?;
@@ -185,6 +195,7 @@ impl<'a> StudyBinder<'a> {
         self.check_unit(entry.span, entry.unit.as_deref(), &unit, &entry.variable)?;
         let full_scale = self.amount(entry.span, entry.full_scale.as_ref(), &unit, entry.unit.as_deref());
         let accuracy = match &entry.accuracy {
+            // A share stays one: the full scale may come from recordings that are not read yet.
             Some(Amount::Part(part)) => Some(Amount::Part(*part)),
             other => {
                 self.amount(entry.span, other.as_ref(), &unit, entry.unit.as_deref()).map(|v| Amount::Value(v, None))
@@ -194,7 +205,7 @@ impl<'a> StudyBinder<'a> {
         Some(BoundSignal { name, variable, unit, difference, full_scale, accuracy, entry: entry.clone() })
     }
 
-    /// A difference in the variable's unit; a plain number is one in the column's unit.
+    /// An amount as a difference in the variable's unit. A plain number counts in the column's unit.
     fn amount(&mut self, span: Span, amount: Option<&Amount>, unit: &str, column: Option<&str>) -> Option<f64> {
         let amount = match amount? {
             Amount::Value(value, None) => Amount::Value(*value, column.map(str::to_owned)),
@@ -209,6 +220,7 @@ impl<'a> StudyBinder<'a> {
         }
     }
 
+    /// Checks that the column's unit converts to the variable's; `None` with a message where it does not.
     fn check_unit(&mut self, span: Span, column: Option<&str>, unit: &str, name: &str) -> Option<()> {
         match conversion(column.unwrap_or(""), unit) {
             Ok(_) => Some(()),
@@ -222,6 +234,7 @@ impl<'a> StudyBinder<'a> {
         }
     }
 
+    /// An entry of `[parameters]`; `None` with a message where it does not fit.
     fn parameter(&mut self, entry: &ParameterEntry) -> Option<BoundParameter> {
         let parameter = |v: &FlatVariable| v.variability == Variability::Parameter;
         let (variable, v) = self.find(entry.span, "parameter", &entry.name, parameter)?;
@@ -231,6 +244,7 @@ impl<'a> StudyBinder<'a> {
                 self.report(entry.span, format!("`{}` is not a real number", entry.name), "cannot be varied smoothly");
                 return None;
             }
+            // The structure depends on it, so it is a constant of the flat model. `"exact"` asks for nothing else.
             Variability::Constant if entry.exact => return None,
             Variability::Constant => {
                 let text = format!("the structure of the model depends on `{}`", entry.name);
@@ -258,13 +272,14 @@ impl<'a> StudyBinder<'a> {
         Some(BoundParameter { variable, name: entry.name.clone(), unit, knowledge, min, max, span: entry.span })
     }
 
+    /// A bound in the parameter's unit.
     fn bound(&mut self, entry: &ParameterEntry, bound: &Option<Amount>, unit: &str, difference: bool) -> Option<f64> {
         let bound = bound.as_ref()?;
         let value = if difference { bound.difference_in_unit(unit, 0.0) } else { bound.in_unit(unit, 0.0) };
         value.map_err(|why| self.report(entry.span, why, "a bound of this parameter")).ok()
     }
 
-    /// Every input of the model has a column or a value of its own, and only one.
+    /// Checks that every input of the model has a column, or a value of its own.
     fn check_inputs(&mut self, study: &Study, bound: &BoundStudy) {
         for (i, v) in (0u32..).zip(&self.model.variables) {
             let driven = bound.inputs.iter().any(|b| b.variable == VarId(i));
@@ -278,8 +293,10 @@ impl<'a> StudyBinder<'a> {
     }
 }
 
-/// How values in a unit become values in another; `None` where they stay as they are.
+/// The two units of a conversion. `Ok(None)` where values stay as they are; `Err` where units are unknown or do not
+/// convert.
 pub(super) fn conversion(from: &str, to: &str) -> Result<Option<(MeasurementUnit, MeasurementUnit)>, ()> {
+    // A missing unit on either side means that the values are already in the other one.
     if from.is_empty() || to.is_empty() || from == to {
         return Ok(None);
     }

@@ -1,4 +1,7 @@
-//! Recordings read, checked and converted to the units of the model.
+//! Reads the recordings of a study, checks them and converts them to the units of the model.
+//!
+//! CSV files enter through a [`World`]; [`Recording`]s leave, whose columns are in the order of the study's inputs and
+//! signals. `bramah_results` finds separators, headers and units of the files.
 
 use super::bind::{BoundStudy, conversion};
 use super::table::at;
@@ -9,34 +12,33 @@ use bramah_syntax::diag::{Code, Diagnostic, Sources, Span, StageResult};
 use bramah_syntax::world::World;
 use std::path::Path;
 
-/// One recording in the units of the model.
+/// One recording in the units of the model. All columns are as long as `times`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recording {
     /// The file as the study names it.
     pub file: String,
-    /// What it is for.
+    /// Its role.
     pub role: RecordingRole,
-    /// Times of the samples in seconds, growing.
+    /// Times of the samples in seconds, ascending.
     pub times: Vec<f64>,
-    /// One column an entry of [`BoundStudy::inputs`], each as long as `times`, without NaN.
+    /// One column for each entry of [`BoundStudy::inputs`], without NaN.
     pub inputs: Vec<Vec<f64>>,
-    /// One column an entry of [`BoundStudy::signals`], each as long as `times`, with the sign applied. NaN where
-    /// nothing was measured.
+    /// One column for each entry of [`BoundStudy::signals`], with the sign applied; NaN where nothing was measured.
     pub signals: Vec<Vec<f64>>,
-    /// Into how many pieces a run along it is cut; 1 for none.
+    /// Number of pieces for multiple shooting; 1 where it is not cut.
     pub pieces: usize,
 }
 
 impl BoundStudy {
-    /// Reads the recordings of one role. File names are taken relative to `data`, or to the folder of the study.
+    /// Reads the recordings of one role. File names are relative to `data`, or without it to the folder of the study.
     ///
-    /// Texts are added to `sources`. Optional recordings that do not exist are left out.
+    /// Texts are added to `sources`. Optional recordings that do not exist are left out. The result carries warnings
+    /// about signals that never change, and about inputs that are constant in all train recordings.
     ///
     /// # Errors
-    /// [`Code::BadStudy`] for files that are not there or hold nothing in the window; [`Code::BadData`] for missing
-    /// columns, times that do not grow, gaps, inputs with empty cells, columns without any number or in a unit that
-    /// cannot be converted. Warnings are a signal that never changes, and an input that does not in any recording that
-    /// is fitted.
+    /// [`Code::BadStudy`] for files that do not exist or hold too few samples in their window; [`Code::BadData`] for
+    /// missing columns, times that do not grow, gaps, inputs with empty cells, columns without any number or in a unit
+    /// that cannot be converted.
     pub fn load(
         &self,
         world: &dyn World,
@@ -47,6 +49,7 @@ impl BoundStudy {
         let mut loader = RecordingLoader { bound: self, role, sources, diagnostics: Vec::new() };
         let mut found = Vec::new();
         for file in self.recordings.iter().filter(|r| r.role == role) {
+            // `join` keeps absolute paths as they are.
             let path = data.unwrap_or(&self.folder).join(&file.file);
             found.extend(loader.recording(world, file, &path));
         }
@@ -64,19 +67,21 @@ impl BoundStudy {
         }
     }
 
-    /// True where the study has recordings of this role.
+    /// Whether the study lists recordings of this role.
     pub fn has(&self, role: RecordingRole) -> bool {
         self.recordings.iter().any(|r| r.role == role)
     }
 
-    /// The files of the study and their roles, in its order.
+    /// Files of the study and their roles, in its order.
     pub fn files(&self) -> impl Iterator<Item = (&str, RecordingRole)> {
         self.recordings.iter().map(|r| (r.file.as_str(), r.role))
     }
 }
 
-/// The sensors' ranges in the units of the variables: as the study says, or peak to peak over `train`; of a signal that
-/// stands still its size.
+/// For each signal the sensor's range, in the variable's unit.
+///
+/// It is the `full_scale` of the study, else peak to peak over `train`; for a constant signal its size, or 1 where that
+/// is zero.
 pub fn full_scales(bound: &BoundStudy, train: &[Recording]) -> Vec<f64> {
     let range = |k: usize| {
         let values = || train.iter().flat_map(|r| r.signals[k].iter().copied()).filter(|v| !v.is_nan());
@@ -90,12 +95,13 @@ pub fn full_scales(bound: &BoundStudy, train: &[Recording]) -> Vec<f64> {
     bound.signals.iter().enumerate().map(|(k, s)| s.full_scale.unwrap_or_else(|| range(k))).collect()
 }
 
-/// Largest value of a column, in SI units: sums of its squares must be numbers.
+/// Largest absolute value of a column, in SI units: sums of squares must not overflow.
 const LARGEST: f64 = 1e100;
 
-/// From so many jumps on an input is taken for one that steps.
+/// From this many jumps on an input counts as stepped.
 const MANY_JUMPS: usize = 4;
 
+/// Reads recordings of one role and collects messages about them.
 struct RecordingLoader<'a> {
     bound: &'a BoundStudy,
     role: RecordingRole,
@@ -104,6 +110,7 @@ struct RecordingLoader<'a> {
 }
 
 impl RecordingLoader<'_> {
+    /// Reads one file; `None` with a message where it cannot be used, or without one where it is optional and missing.
     fn recording(&mut self, world: &dyn World, file: &RecordingFile, path: &Path) -> Option<Recording> {
         let text = match world.read(path) {
             Ok(text) => text,
@@ -129,6 +136,7 @@ impl RecordingLoader<'_> {
             self.diagnostics.push(at(file.span, text, "too few to use"));
             return None;
         }
+        // Each piece has to determine an initial state from its own samples.
         if table.len() < 2 * file.pieces {
             let text = format!("`{}` has {} samples for {} pieces", file.file, table.len(), file.pieces);
             self.diagnostics.push(at(file.span, text, "each piece needs two at least"));
@@ -137,12 +145,14 @@ impl RecordingLoader<'_> {
         Some(self.converted(file, table, head))
     }
 
+    /// Converts the columns of a table: first those of the inputs, then those of the signals.
     fn converted(&mut self, file: &RecordingFile, table: Trajectory, head: Span) -> Recording {
         let count = self.bound.inputs.len();
         let mut columns = table.columns.into_iter();
         let mut inputs = Vec::new();
         for (input, values) in self.bound.inputs.iter().zip(columns.by_ref()) {
             let said = &table.signals[inputs.len()].unit;
+            // The unit in the study goes before the one in the file's head; `check_said` reports a contradiction.
             let unit = input.entry.unit.as_deref().unwrap_or(said);
             self.check_said(&input.entry.column, input.entry.unit.as_deref(), input.entry.span, head);
             let to = (input.unit.as_str(), input.difference);
@@ -165,7 +175,7 @@ impl RecordingLoader<'_> {
         Recording { file: file.file.clone(), role: self.role, times: table.times, inputs, signals, pieces: file.pieces }
     }
 
-    /// A unit in the study may not contradict the file's own.
+    /// Reports a unit of the study that contradicts the one in the file.
     fn check_said(&mut self, column: &str, said: Option<&str>, entry: Span, head: Span) {
         let Some(said) = said else { return };
         if let Some(d) = contradiction(self.sources, head.file, column, said) {
@@ -175,6 +185,7 @@ impl RecordingLoader<'_> {
         }
     }
 
+    /// Converts a column and applies its sign. The values come back unchanged, with a message, where that fails.
     fn in_unit(
         &mut self,
         values: Vec<f64>,
@@ -204,12 +215,13 @@ impl RecordingLoader<'_> {
         converted
     }
 
-    /// An input that is to be joined by straight lines but jumps between values that last: its source holds it.
+    /// Warns about an input that is interpolated linearly but consists of steps: its source probably holds it.
     fn check_course(&mut self, values: &[f64], entry: &InputColumn, head: Span) {
         let changes = (1..values.len()).filter(|&i| values[i] != values[i - 1]);
         let (mut jumps, mut ramps) = (0, 0);
         for i in changes {
             let stays = |a: usize, b: usize| values.get(a) == values.get(b);
+            // A change between two equal pairs of samples is a step; a ramp changes several times in a row.
             let alone = (i < 2 || stays(i - 2, i - 1)) && (i + 1 == values.len() || stays(i, i + 1));
             if alone { jumps += 1 } else { ramps += 1 }
         }
@@ -220,7 +232,7 @@ impl RecordingLoader<'_> {
         }
     }
 
-    /// An input may stand still in one recording, but one that does so in all of them excites nothing.
+    /// Warns about an input that is constant in all recordings. In a single one it may be.
     fn check_excitation(&mut self, recordings: &[Recording]) {
         for (k, input) in self.bound.inputs.iter().enumerate() {
             let mut values = recordings.iter().flat_map(|r| r.inputs[k].iter().copied());
@@ -234,6 +246,7 @@ impl RecordingLoader<'_> {
         }
     }
 
+    /// Reports a signal without any number, and warns about one that never changes.
     fn check_signal(&mut self, values: &[f64], column: &str, head: Span) {
         let mut known = values.iter().copied().filter(|v| !v.is_nan());
         let Some(first) = known.next() else {

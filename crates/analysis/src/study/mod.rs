@@ -1,8 +1,11 @@
-//! Studies: a model, recordings of its bench and what is known about its parameters, as TOML.
+//! Studies: a model, recordings of its test rig and what is known about its parameters, as a TOML file.
 //!
-//! `identify` and `gap` read the same file. [`parse`] makes a [`Study`] of a text; [`Study::bind`] ties its names to
-//! the variables of a compiled model; [`BoundStudy::load`] reads the recordings of one role, so that held ones may be
-//! read last. The reference of the file is `docs/study.md`.
+//! `identify` and `crates/gap` read the same file. It passes three stages:
+//! 1. [`parse`] makes a [`Study`] of a text; names and units are still texts.
+//! 2. [`Study::bind`] resolves the names in a compiled model and converts amounts to its units: a [`BoundStudy`].
+//! 3. [`BoundStudy::load`] reads the recordings of one role, so that held ones can be read after the fit.
+//!
+//! Mistakes become diagnostics (`E6xx`) at their places in the study. The reference of the file is `docs/study.md`.
 
 mod amount;
 mod bind;
@@ -19,101 +22,102 @@ use bramah_syntax::diag::{Code, Diagnostic, Sources, Span, StageResult};
 use bramah_syntax::world::World;
 use std::path::{Path, PathBuf};
 
-/// A study file.
+/// The contents of a study file, before its names are resolved in a model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// The folder of the study file: relative paths begin here.
+    /// The folder of the study file; relative paths start here.
     pub folder: PathBuf,
-    /// A `.mo` file or a folder that is a package, as written; `None` for a class that ships with bramah.
+    /// A `.mo` file or a package folder, as written; `None` for a class that ships with bramah.
     pub model: Option<String>,
-    /// The class to run, by its dotted name.
+    /// The dotted name of the class to run; `None` where the file has only one.
     pub class: Option<String>,
     /// The model's inputs and the columns that drive them.
     pub inputs: Vec<InputColumn>,
-    /// What was measured.
+    /// The measured signals and their columns.
     pub signals: Vec<SignalColumn>,
     /// The recordings, in the order of the file.
     pub recordings: Vec<RecordingFile>,
     /// What is known about parameters.
     pub parameters: Vec<ParameterEntry>,
-    /// What the diagnosis may propose.
+    /// Which effects the diagnosis (`gap`) may propose.
     pub effects: EffectChoice,
 }
 
-/// An entry of `[inputs]`.
+/// An entry of `[inputs]`: the column that drives an input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InputColumn {
-    /// The model's input.
+    /// The name of the model's input.
     pub name: String,
-    /// The column of the recordings; the input's name where the study does not say.
+    /// The column of the recordings; by default the input's name.
     pub column: String,
-    /// The column's unit, where the study says it.
+    /// The unit of the column; `None` where the study does not state it.
     pub unit: Option<String>,
-    /// Each sample holds until the next; else straight lines join them.
+    /// True: each sample holds until the next one. False: linear interpolation.
     pub hold: bool,
-    /// A sensor shows it: it is no command that may be limited or come late inside the machine.
+    /// True for `kind = "measured"`: the value comes from a sensor. False: a controller commands it, so that a dead
+    /// zone, a limit or a lag inside the machine may act on it.
     pub measured: bool,
     /// Where the entry stands.
     pub span: Span,
 }
 
-/// An entry of `[signals]`.
+/// An entry of `[signals]`: a measured variable of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SignalColumn {
     /// The name that reports use.
     pub name: String,
-    /// The model's variable; the signal's name where the study does not say.
+    /// The name of the model's variable; by default the signal's name.
     pub variable: String,
-    /// The column of the recordings; the signal's name where the study does not say.
+    /// The column of the recordings; by default the signal's name.
     pub column: String,
-    /// The column's unit, where the study says it.
+    /// The unit of the column; `None` where the study does not state it.
     pub unit: Option<String>,
     /// 1 or -1: the column times this is the variable.
     pub sign: f64,
-    /// The sensor's range.
+    /// The sensor's range; `None` for peak to peak over the train recordings.
     pub full_scale: Option<Amount>,
-    /// One standard deviation: absolute, or as part of the full scale.
+    /// One standard deviation of the sensor, absolute or relative to the full scale; `None` for what the data show.
     pub accuracy: Option<Amount>,
     /// Where the entry stands.
     pub span: Span,
 }
 
-/// What a recording is for.
+/// The role of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RecordingRole {
-    /// Selection and fitting.
+    /// It is fitted to.
     Train,
-    /// Judging the result; never used before.
+    /// It validates the result and is never used before.
     Held,
 }
 
-/// An entry of `[[recordings]]`.
+/// An entry of `[[recordings]]`: a file with its role and window.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordingFile {
     /// The file as written.
     pub file: String,
-    /// What it is for.
+    /// Its role.
     pub role: RecordingRole,
-    /// The time column, where the study says it.
+    /// The time column; `None` for the usual names, else the first column.
     pub time: Option<String>,
-    /// First and last time to use, in seconds of the recording.
+    /// First and last time to use, in seconds of the recording; `None` for all.
     pub window: Option<(f64, f64)>,
-    /// It is left out where it does not exist.
+    /// Whether it is skipped when the file does not exist.
     pub optional: bool,
-    /// Into how many pieces that follow each other `identify` cuts it; 1 for none.
+    /// Number of pieces for multiple shooting; 1 where it is not cut.
     pub pieces: usize,
     /// Where the file's name stands.
     pub span: Span,
 }
 
-/// An entry of `[parameters]`.
+/// An entry of `[parameters]`: how well a parameter is known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ParameterEntry {
     /// The parameter's dotted name.
     pub name: String,
-    /// True for `"exact"`: it is never moved.
+    /// True for `"exact"`: the parameter is never changed.
     pub exact: bool,
-    /// One standard deviation of the data sheet: relative, or absolute.
+    /// One standard deviation of the data sheet, relative or absolute; `None` for bounds alone.
     pub sigma: Option<Amount>,
     /// Lower bound.
     pub min: Option<Amount>,
@@ -123,7 +127,7 @@ pub struct ParameterEntry {
     pub span: Span,
 }
 
-/// The section `[effects]`; empty lists choose everything.
+/// The section `[effects]`. Empty lists do not restrict anything.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct EffectChoice {
     /// Only these effects or families.
@@ -132,7 +136,7 @@ pub struct EffectChoice {
     pub exclude: Vec<String>,
     /// Only at these places.
     pub places: Vec<String>,
-    /// A folder with further effects, relative to the study.
+    /// A folder with further effects, relative to the study; `None` for the shipped ones alone.
     pub folder: Option<String>,
 }
 
@@ -154,13 +158,14 @@ impl Study {
         }
     }
 
-    /// What to compile: the model file beside the study, or the class that ships with bramah.
+    /// The compilation request: the model file beside the study, or the class that ships with bramah.
     pub fn request(&self) -> bramah_model::compile::Request {
         let class = self.class.clone();
         let source = match &self.model {
             Some(model) => self.folder.join(model),
             None => PathBuf::from(class.clone().unwrap_or_default()),
         };
+        // Parameters take other values later, so one that is 0 now must not remove a derivative from the equations.
         bramah_model::compile::Request {
             source,
             model: class,
@@ -169,7 +174,7 @@ impl Study {
         }
     }
 
-    /// The recordings of one role.
+    /// The recordings of one role, in the order of the file.
     pub fn of_role(&self, role: RecordingRole) -> impl Iterator<Item = &RecordingFile> {
         self.recordings.iter().filter(move |r| r.role == role)
     }

@@ -1,4 +1,7 @@
-//! The text of a study read.
+//! Parses the text of a study into a [`Study`].
+//!
+//! Each section of the file has a function of `StudyTable`; defaults of missing keys are set there. Names, columns and
+//! model are not checked here but in `bind` and `load`.
 
 use std::path::Path;
 
@@ -8,17 +11,23 @@ use super::reader::{StudyEntry, StudyReader, StudyValue, number};
 use super::{Amount, EffectChoice, InputColumn, ParameterEntry, RecordingFile, RecordingRole, SignalColumn, Study};
 use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources, Span, StageResult};
 
+/// Keys at the top of the file.
 const KEYS: &[&str] = &["version", "model", "class", "inputs", "signals", "recordings", "parameters", "effects"];
+/// Keys of an entry of `[inputs]`. In this and the following lists one key is the default branch of its reader.
 const INPUT_KEYS: &[&str] = &["column", "unit", "hold", "kind"];
+/// Keys of an entry of `[signals]`.
 const SIGNAL_KEYS: &[&str] = &["variable", "column", "unit", "sign", "full_scale", "accuracy"];
+/// Keys of an entry of `[[recordings]]`.
 const RECORDING_KEYS: &[&str] = &["file", "role", "time", "window", "optional", "pieces"];
+/// Keys of an entry of `[parameters]`.
 const PARAMETER_KEYS: &[&str] = &["sigma", "min", "max"];
+/// Keys of `[effects]`.
 const EFFECT_KEYS: &[&str] = &["include", "exclude", "places", "folder"];
 
-/// Reads a study that was added to `sources`. Paths in it are as written.
+/// Parses a study that was added to `sources`. Paths in it stay as written.
 ///
 /// # Errors
-/// [`Code::BadStudy`]: text that is not TOML, unknown keys, values of the wrong kind, nothing measured.
+/// [`Code::BadStudy`]: text that is not TOML, unknown keys, values of the wrong type, no signals or recordings.
 pub fn parse(sources: &Sources, file: FileId) -> StageResult<Study> {
     let source = sources.get(file);
     let (document, errors) = DeTable::parse_recoverable(&source.text);
@@ -28,11 +37,13 @@ pub fn parse(sources: &Sources, file: FileId) -> StageResult<Study> {
         let message = format!("the text is not TOML: {}", error.message().lines().next().unwrap_or("unreadable"));
         table.reader.report(&error.span().unwrap_or(0..0), message, "here");
     }
+    // Entries of a text with syntax errors would only give follow-up messages.
     if table.reader.diagnostics.is_empty() {
         for (key, value) in document.get_ref() {
             table.entry(key.get_ref(), &key.span(), value);
         }
     }
+    // An entry that could not be read may be the one that seems to be missing.
     if table.reader.diagnostics.is_empty() {
         table.check_whole();
     }
@@ -44,6 +55,7 @@ pub fn parse(sources: &Sources, file: FileId) -> StageResult<Study> {
     }
 }
 
+/// A study without entries, in the folder of its file.
 fn empty(path: &Path) -> Study {
     Study {
         folder: path.parent().unwrap_or(Path::new("")).to_owned(),
@@ -57,13 +69,18 @@ fn empty(path: &Path) -> Study {
     }
 }
 
+/// A study while its file is read.
 struct StudyTable {
+    /// Collects the mistakes.
     reader: StudyReader,
+    /// The entries read so far.
     study: Study,
+    /// Whether the key `version` was there.
     versioned: bool,
 }
 
 impl StudyTable {
+    /// Reads one key at the top.
     fn entry(&mut self, key: &str, place: &std::ops::Range<usize>, value: &StudyValue<'_>) {
         match key {
             "version" => self.version(value),
@@ -78,6 +95,7 @@ impl StudyTable {
         }
     }
 
+    /// Checks the format version, which is 1.
     fn version(&mut self, value: &StudyValue<'_>) {
         self.versioned = true;
         if number(value.get_ref()) != Some(1.0) {
@@ -85,7 +103,7 @@ impl StudyTable {
         }
     }
 
-    /// What the file as a whole must say.
+    /// Reports what a study must have and this one lacks.
     fn check_whole(&mut self) {
         let mut lacks = |what: &str, help: &str| {
             let place = self.reader.span(&(0..0));
@@ -105,6 +123,7 @@ impl StudyTable {
         }
     }
 
+    /// Reads `[inputs]`.
     fn inputs(&mut self, value: &StudyValue<'_>) {
         for StudyEntry { name, span, value } in self.reader.named("inputs", value) {
             let mut input = InputColumn { column: name.clone(), name, unit: None, hold: true, measured: false, span };
@@ -118,6 +137,7 @@ impl StudyTable {
         }
     }
 
+    /// Reads `[signals]`.
     fn signals(&mut self, value: &StudyValue<'_>) {
         for StudyEntry { name, span, value } in self.reader.named("signals", value) {
             let mut signal = SignalColumn {
@@ -142,6 +162,7 @@ impl StudyTable {
         }
     }
 
+    /// Reads `[[recordings]]`.
     fn recordings(&mut self, value: &StudyValue<'_>) {
         let DeValue::Array(items) = value.get_ref() else {
             self.reader.wrong_kind("recordings", value, "a list of tables: `[[recordings]]`");
@@ -152,6 +173,7 @@ impl StudyTable {
         }
     }
 
+    /// Reads one table of `[[recordings]]`.
     fn recording(&mut self, item: &StudyValue<'_>) {
         let mut recording = RecordingFile {
             file: String::new(),
@@ -173,6 +195,7 @@ impl StudyTable {
             "pieces" => recording.pieces = pieces(reader, key, value),
             _ => recording.optional = reader.truth(key, value).unwrap_or(false),
         });
+        // An item that is no table was reported by `fields` already.
         if recording.file.is_empty() && item.get_ref().is_table() {
             self.reader.report(&item.span(), "a recording without `file`", "this one");
         }
@@ -182,6 +205,7 @@ impl StudyTable {
         self.study.recordings.push(recording);
     }
 
+    /// Reads `[parameters]`.
     fn parameters(&mut self, value: &StudyValue<'_>) {
         for StudyEntry { name, span, value } in self.reader.named("parameters", value) {
             let mut entry = ParameterEntry { name, exact: false, sigma: None, min: None, max: None, span };
@@ -205,6 +229,7 @@ impl StudyTable {
         }
     }
 
+    /// Reads `[effects]`.
     fn effects(&mut self, value: &StudyValue<'_>) {
         let mut effects = EffectChoice::default();
         self.fields("effects", value, EFFECT_KEYS, |reader, key, value| match key {
@@ -216,7 +241,7 @@ impl StudyTable {
         self.study.effects = effects;
     }
 
-    /// Hands each entry of a table with a known key to `take`.
+    /// Passes each entry with a known key to `take`, and reports the others. `name` is that of the table, for messages.
     fn fields(
         &mut self,
         name: &str,
@@ -235,6 +260,7 @@ impl StudyTable {
     }
 }
 
+/// A unit string, checked for its syntax.
 fn unit(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<String> {
     let text = reader.text(key, value)?;
     match bramah_expr::units::MeasurementUnit::parse(&text) {
@@ -246,6 +272,7 @@ fn unit(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<S
     }
 }
 
+/// 1 or -1.
 fn sign(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> f64 {
     match number(value.get_ref()) {
         Some(x) if x.abs() == 1.0 => x,
@@ -256,6 +283,7 @@ fn sign(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> f64 {
     }
 }
 
+/// The key `kind` of an input: true for `"measured"`.
 fn is_measured(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> bool {
     match value.get_ref().as_str() {
         Some("command") => false,
@@ -267,6 +295,7 @@ fn is_measured(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> b
     }
 }
 
+/// The key `role` of a recording.
 fn role(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> RecordingRole {
     match value.get_ref().as_str() {
         Some("train") => RecordingRole::Train,
@@ -278,6 +307,7 @@ fn role(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Recordin
     }
 }
 
+/// The key `window` of a recording: two ascending times in seconds.
 fn window(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<(f64, f64)> {
     let ends: Option<Vec<f64>> =
         value.get_ref().as_array().and_then(|a| a.iter().map(|v| number(v.get_ref())).collect());
@@ -290,6 +320,7 @@ fn window(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option
     }
 }
 
+/// The key `pieces` of a recording, from 1 to 1000.
 fn pieces(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> usize {
     match number(value.get_ref()) {
         Some(x) if (1.0..=1000.0).contains(&x) && x.fract() == 0.0 => x as usize,
@@ -300,6 +331,7 @@ fn pieces(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> usize 
     }
 }
 
+/// An amount, written as a text or as a plain number.
 fn amount(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<Amount> {
     if let Some(text) = value.get_ref().as_str() {
         return Amount::parse(text).map_err(|why| reader.report(&value.span(), why, format!("value of `{key}`"))).ok();
@@ -307,6 +339,7 @@ fn amount(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option
     reader.number(key, value).map(|x| Amount::Value(x, None))
 }
 
+/// An amount above zero.
 fn positive(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<Amount> {
     let amount = amount(reader, key, value)?;
     if amount.number() > 0.0 {
@@ -316,6 +349,7 @@ fn positive(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Opti
     None
 }
 
+/// A bound of a parameter: an amount that is no percentage.
 fn bound(reader: &mut StudyReader, key: &str, value: &StudyValue<'_>) -> Option<Amount> {
     let amount = amount(reader, key, value)?;
     if matches!(amount, Amount::Part(_)) {

@@ -1,4 +1,8 @@
-//! Many runs of one model: which, what is kept of each, and the table they make.
+//! Parameter sweeps: many runs of one model with different parameters, and the scalar results of each.
+//!
+//! A compiled model and the section `[sweep]` of an experiment file enter; a [`SweepPlan`] leaves, whose runs the
+//! command `bramah sweep` makes in parallel. Their results go into a [`SweepTable`], from which Sobol' indices
+//! ([`indices`]) and pictures are made.
 
 mod picture;
 mod result;
@@ -23,22 +27,23 @@ use bramah_solve::{Control, Settings, signals, simulate};
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 use std::sync::atomic::AtomicBool;
 
-/// A sweep tied to a model.
+/// A sweep whose names are resolved in a model.
 #[derive(Clone, Debug)]
 pub struct SweepPlan {
-    /// The parameters.
+    /// The parameters that vary.
     pub varied: Vec<SweepParameter>,
+    /// The variables of these parameters.
     variables: Vec<VarId>,
-    /// The values of all runs, one row a run.
+    /// Parameter values of all runs: one row for each run, one column for each parameter.
     pub samples: Vec<Vec<f64>>,
     /// Names and expressions of the results.
     pub results: Vec<(String, ResultExpression)>,
-    /// The variables that the results read.
+    /// The variables that the results read; runs record these.
     pub wanted: Vec<VarId>,
 }
 
 impl SweepPlan {
-    /// Ties a sweep to a model.
+    /// Resolves a sweep in a model and draws its samples. All mistakes are collected.
     ///
     /// # Errors
     /// [`Code::BadExperiment`]: names that the model does not have, parameters on which its structure depends, values
@@ -82,10 +87,10 @@ impl SweepPlan {
         if found.is_empty() { Ok(SweepPlan { varied, variables, samples, results, wanted }) } else { Err(found) }
     }
 
-    /// One run: the results in their order and the rows, or why there are none.
+    /// Makes the run of one row of samples. Returns its results and its rows.
     ///
     /// # Errors
-    /// What the run said.
+    /// The message of the run.
     pub fn run(
         &self,
         model: &CompiledModel,
@@ -107,7 +112,7 @@ impl SweepPlan {
     }
 }
 
-/// A parameter that can vary, with its unit and value.
+/// The variable, unit and value of a parameter that can vary.
 fn parameter(model: &CompiledModel, name: &str) -> Result<(VarId, String, f64), Diagnostic> {
     let variables = &model.flat.variables;
     let bad = |text: String| Diagnostic::new(Code::BadExperiment, text);

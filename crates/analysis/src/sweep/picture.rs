@@ -1,16 +1,18 @@
-//! The results of a sweep over its parameters: a scatter matrix, and one panel a pair.
+//! Pictures of a sweep: a scatter matrix, and one panel for each pair of parameter and result.
+//!
+//! A [`SweepTable`] with its parameters in the first columns enters; figures for `crates/plot` leave.
 
 use super::SweepTable;
 use bramah_plot::matrix::ScatterMatrix;
 use bramah_plot::{Figure, FigurePanel, PlotSeries};
 
-/// Panels drawn at most.
+/// Largest number of panels.
 const PANELS: usize = 12;
-/// Columns in the matrix at most.
+/// Largest number of columns in the matrix.
 const COLUMNS: usize = 8;
 
-/// Parameters and results against each other, dots coloured by the first result: the cell of two parameters is a map of
-/// it. Where there are too many columns, results and parameters beyond the first ones are left out.
+/// Parameters and results against each other. The first result colours the dots, so a cell of two parameters is a map
+/// of it. Columns beyond the limit are left out.
 pub fn matrix(table: &SweepTable, parameters: usize, title: &str) -> ScatterMatrix {
     let results = (table.columns.len() - parameters).min(COLUMNS / 2);
     let shown = (0..parameters.min(COLUMNS - results)).chain(parameters..parameters + results);
@@ -20,7 +22,7 @@ pub fn matrix(table: &SweepTable, parameters: usize, title: &str) -> ScatterMatr
     ScatterMatrix { title: title.to_owned(), names, columns, shade }
 }
 
-/// One panel for each parameter and result, with a cross a run.
+/// One panel for each parameter and result, with a cross for each run.
 pub fn scatter(table: &SweepTable, parameters: usize, title: &str) -> Figure {
     let results = parameters..table.columns.len();
     let pairs = results.flat_map(|r| (0..parameters).map(move |p| (p, r))).take(PANELS);
@@ -36,7 +38,7 @@ pub fn scatter(table: &SweepTable, parameters: usize, title: &str) -> Figure {
     Figure { title: title.to_owned(), panels: panels.collect(), shared_x: false }
 }
 
-/// Points as small crosses.
+/// Points as small crosses; NaN is left out.
 fn crosses(x: &[f64], y: &[f64], name: &str) -> PlotSeries {
     let arm = |values: &[f64]| {
         let finite = || values.iter().copied().filter(|v| v.is_finite());
@@ -46,6 +48,7 @@ fn crosses(x: &[f64], y: &[f64], name: &str) -> PlotSeries {
     let (wide, high) = (arm(x), arm(y));
     let mut series = PlotSeries { name: name.to_owned(), ..PlotSeries::default() };
     for (&x, &y) in x.iter().zip(y).filter(|(x, y)| x.is_finite() && y.is_finite()) {
+        // NaN interrupts the line between the two strokes.
         series.x.extend([x - wide, x + wide, f64::NAN, x, x, f64::NAN]);
         series.y.extend([y, y, f64::NAN, y - high, y + high, f64::NAN]);
     }

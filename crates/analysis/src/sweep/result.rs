@@ -1,8 +1,11 @@
-//! Scalar results of a run: `max(cyl.v)`, `settling(p, 0.05)`, `final(x) - initial(x)`.
+//! Scalar results of a run: expressions such as `max(cyl.v)`, `settling(p, 0.05)` or `final(x) - initial(x)`.
+//!
+//! A text of the section `[sweep.results]` enters; a [`ResultExpression`] leaves, which [`ResultExpression::evaluate`]
+//! applies to the rows of a run. The parser descends recursively: sum, product, power, factor.
 
 use bramah_results::Trajectory;
 
-/// What can be asked of a variable's trajectory.
+/// A number computed from the trajectory of one variable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum TrajectoryMeasure {
     Max,
@@ -14,12 +17,13 @@ enum TrajectoryMeasure {
     Integral,
     TimeOfMax,
     TimeOfMin,
-    /// Time from which on the variable stays near its final value, within a part of its whole change.
+    /// Time from which on the variable stays within a share of its total change around its final value.
     Settling,
-    /// How far it goes beyond its final value, as a part of its whole change.
+    /// How far it exceeds its final value, relative to its total change.
     Overshoot,
 }
 
+/// Names of the measures in expressions.
 const QUESTIONS: &[(&str, TrajectoryMeasure)] = &[
     ("max", TrajectoryMeasure::Max),
     ("min", TrajectoryMeasure::Min),
@@ -35,45 +39,51 @@ const QUESTIONS: &[(&str, TrajectoryMeasure)] = &[
     ("overshoot", TrajectoryMeasure::Overshoot),
 ];
 
-/// An expression over questions.
+/// An expression of measures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResultExpression {
+    /// The outermost operation.
     root: ResultTerm,
 }
 
+/// A node of the expression.
 #[derive(Clone, Debug, PartialEq)]
 enum ResultTerm {
     Number(f64),
+    /// A measure of a variable; the number is the band of `Settling`.
     Ask(TrajectoryMeasure, String, f64),
     Abs(Box<ResultTerm>),
+    /// Square root.
     Root(Box<ResultTerm>),
+    /// A binary operation: `+ - * / ^`.
     Pair(char, Box<ResultTerm>, Box<ResultTerm>),
 }
 
 impl ResultExpression {
-    /// Reads an expression.
+    /// Parses an expression.
     ///
     /// # Errors
-    /// A sentence saying what is expected.
+    /// A sentence that says what is expected.
     pub fn parse(text: &str) -> Result<ResultExpression, String> {
         let mut parser = ResultParser { text, rest: text };
         let root = parser.sum(0)?;
         if parser.rest.trim().is_empty() { Ok(ResultExpression { root }) } else { Err(parser.unexpected()) }
     }
 
-    /// The variables it reads.
+    /// Names of the variables it reads, each once.
     pub fn variables(&self) -> Vec<String> {
         let mut found = Vec::new();
         collect(&self.root, &mut found);
         found
     }
 
-    /// Its value for a run; NaN where a variable was not recorded.
+    /// Its value for the rows of a run; NaN where a variable was not recorded.
     pub fn evaluate(&self, run: &Trajectory) -> f64 {
         evaluate(&self.root, run)
     }
 }
 
+/// Adds the variables of a node to `found`.
 fn collect(term: &ResultTerm, found: &mut Vec<String>) {
     match term {
         ResultTerm::Ask(_, name, _) if !found.contains(name) => found.push(name.clone()),
@@ -86,6 +96,7 @@ fn collect(term: &ResultTerm, found: &mut Vec<String>) {
     }
 }
 
+/// The value of a node.
 fn evaluate(term: &ResultTerm, run: &Trajectory) -> f64 {
     match term {
         ResultTerm::Number(x) => *x,
@@ -107,6 +118,7 @@ fn evaluate(term: &ResultTerm, run: &Trajectory) -> f64 {
     }
 }
 
+/// A measure of a trajectory; NaN for one without rows.
 fn answer(question: TrajectoryMeasure, times: &[f64], values: &[f64], band: f64) -> f64 {
     let (Some(&first), Some(&last)) = (values.first(), values.last()) else { return f64::NAN };
     let most = |sign: f64| (0..values.len()).max_by(|&a, &b| (sign * values[a]).total_cmp(&(sign * values[b])));
@@ -128,37 +140,44 @@ fn answer(question: TrajectoryMeasure, times: &[f64], values: &[f64], band: f64)
         TrajectoryMeasure::TimeOfMin => when(-1.0),
         TrajectoryMeasure::Settling => {
             let near = band * (last - first).abs();
+            // The last row outside the band decides; the variable is settled from the row after it.
             let outside = values.iter().rposition(|v| (v - last).abs() > near);
             outside.map_or(0.0, |k| times[(k + 1).min(times.len() - 1)] - times[0])
         }
         TrajectoryMeasure::Overshoot => {
+            // The extreme in the direction of the change; its sign cancels in the quotient.
             let change = last - first;
             (extreme(change.signum()) - last) / change
         }
     }
 }
 
-/// By trapezia; events have no width.
+/// The integral by the trapezoidal rule. The two rows of an event have the same time and add nothing.
 fn integral(times: &[f64], values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
     let pairs = times.windows(2).zip(values.windows(2));
     pairs.map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1]))).sum()
 }
 
+/// A recursive descent parser over a text.
 struct ResultParser<'a> {
+    /// The whole text, for messages.
     text: &'a str,
+    /// What is not parsed yet.
     rest: &'a str,
 }
 
-/// Brackets may be nested so deep.
+/// Largest depth of nesting, so that no text overflows the stack.
 const DEEPEST: u32 = 50;
 
 impl ResultParser<'_> {
+    /// The message for a text that does not fit the grammar.
     fn unexpected(&self) -> String {
         let rest = self.rest.trim();
         let at = if rest.is_empty() { "its end" } else { rest };
         format!("the expression `{}` cannot be read from `{at}` on", self.text)
     }
 
+    /// Skips a character, after blanks, where it comes next.
     fn eat(&mut self, c: char) -> bool {
         let found = self.rest.trim_start().strip_prefix(c);
         if let Some(rest) = found {
@@ -167,6 +186,7 @@ impl ResultParser<'_> {
         found.is_some()
     }
 
+    /// Operations of equal precedence, from left to right.
     fn pairs(
         &mut self,
         ops: [char; 2],
@@ -180,19 +200,23 @@ impl ResultParser<'_> {
         Ok(left)
     }
 
+    /// sum = product {("+" | "-") product}
     fn sum(&mut self, depth: u32) -> Result<ResultTerm, String> {
         self.pairs(['+', '-'], depth, Self::product)
     }
 
+    /// product = power {("*" | "/") power}
     fn product(&mut self, depth: u32) -> Result<ResultTerm, String> {
         self.pairs(['*', '/'], depth, Self::power)
     }
 
+    /// power = factor ["^" factor]
     fn power(&mut self, depth: u32) -> Result<ResultTerm, String> {
         let base = self.factor(depth)?;
         if self.eat('^') { Ok(ResultTerm::Pair('^', Box::new(base), Box::new(self.factor(depth)?))) } else { Ok(base) }
     }
 
+    /// factor = "-" power | "(" sum ")" | number | call
     fn factor(&mut self, depth: u32) -> Result<ResultTerm, String> {
         if depth > DEEPEST {
             return Err(format!("the expression `{}` is nested too deeply", self.text));
@@ -209,6 +233,7 @@ impl ResultParser<'_> {
         if is_number { self.number() } else { self.call(depth) }
     }
 
+    /// The longest prefix that is a number.
     fn number(&mut self) -> Result<ResultTerm, String> {
         let fits = |n: &usize| self.rest.is_char_boundary(*n) && self.rest[..*n].parse::<f64>().is_ok();
         let length = (1..=self.rest.len().min(40)).rev().find(fits).ok_or_else(|| self.unexpected())?;
@@ -217,6 +242,7 @@ impl ResultParser<'_> {
         digits.trim().parse().map(ResultTerm::Number).map_err(|_| self.unexpected())
     }
 
+    /// A measure of a variable, `abs` or `sqrt`. Names of variables may hold brackets and commas.
     fn call(&mut self, depth: u32) -> Result<ResultTerm, String> {
         let end = self.rest.find('(').ok_or_else(|| self.unexpected())?;
         let (name, rest) = (self.rest[..end].trim(), &self.rest[end + 1..]);
@@ -233,6 +259,7 @@ impl ResultParser<'_> {
         };
         let close = rest.find(')').ok_or_else(|| self.unexpected())?;
         let inside = &rest[..close];
+        // A comma separates the band only where a number follows it, because `v[1,2]` holds a comma too.
         let band = inside.rsplit_once(',').and_then(|(v, b)| Some((v, b.trim().parse::<f64>().ok()?)));
         let (variable, band) = band.filter(|_| *question == TrajectoryMeasure::Settling).unwrap_or((inside, 0.05));
         if variable.trim().is_empty() {

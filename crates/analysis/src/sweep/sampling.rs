@@ -1,4 +1,7 @@
-//! Samples: which values of the parameters each run gets.
+//! Samples of a sweep: the parameter values of each run.
+//!
+//! A [`ParameterSweep`] and its parameters enter; a matrix of values leaves, one row for each run. Random methods draw
+//! points of the unit cube, which the quantile functions of the parameters map to values.
 
 use super::sobol;
 use crate::experiment::{ParameterSweep, ParameterVariation, SamplingMethod};
@@ -12,7 +15,7 @@ use std::f64::consts::SQRT_2;
 pub struct SweepParameter {
     /// Its name.
     pub name: String,
-    /// Its unit; may be empty.
+    /// Its unit; empty for none.
     pub unit: String,
     /// Its value in the model.
     pub value: f64,
@@ -20,18 +23,18 @@ pub struct SweepParameter {
     pub spread: ParameterVariation,
 }
 
-/// Numbers that look random, evenly spread between 0 and 1. Source: S. Vigna, xorshift64* (2016).
+/// Pseudo-random numbers between 0 and 1. Source: S. Vigna, xorshift64* (2016).
 #[derive(Clone, Debug)]
 pub struct XorshiftGenerator(u64);
 
 impl XorshiftGenerator {
-    /// The same seed gives the same numbers.
+    /// A generator; the same seed gives the same numbers.
     pub fn new(seed: u64) -> XorshiftGenerator {
-        // spreads neighbouring seeds far apart; zero is no state
+        // Multiplication separates neighbouring seeds; `| 1` avoids zero, at which the generator would stay.
         XorshiftGenerator((seed ^ 0x9E37_79B9_7F4A_7C15).wrapping_mul(0xBF58_476D_1CE4_E5B9) | 1)
     }
 
-    /// The next number, above 0 and below 1.
+    /// The next number, greater than 0 and less than 1.
     pub fn roll(&mut self) -> f64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
@@ -40,16 +43,16 @@ impl XorshiftGenerator {
         (high as f64 + 0.5) / (1u64 << 52) as f64
     }
 
-    /// A whole number below `n`.
+    /// A random integer from 0 to n - 1.
     pub fn below(&mut self, n: usize) -> usize {
         ((self.roll() * n as f64) as usize).min(n - 1)
     }
 }
 
-/// The values of all runs, one row a run.
+/// Parameter values of all runs, one row for each run.
 ///
 /// # Errors
-/// A sentence saying which parameter cannot vary so.
+/// A sentence about the parameter whose variation does not fit the method.
 pub fn samples(sweep: &ParameterSweep, varied: &[SweepParameter]) -> Result<Vec<Vec<f64>>, String> {
     match sweep.method {
         SamplingMethod::Grid => Ok(products(&lists(varied)?)),
@@ -62,6 +65,7 @@ pub fn samples(sweep: &ParameterSweep, varied: &[SweepParameter]) -> Result<Vec<
     }
 }
 
+/// The list of values of each parameter, in its unit.
 fn lists(varied: &[SweepParameter]) -> Result<Vec<Vec<f64>>, String> {
     let list = |v: &SweepParameter| match &v.spread {
         ParameterVariation::Values(text) => grid::values(text, &v.unit).map_err(|e| format!("`{}`: {e}", v.name)),
@@ -70,7 +74,7 @@ fn lists(varied: &[SweepParameter]) -> Result<Vec<Vec<f64>>, String> {
     varied.iter().map(list).collect()
 }
 
-/// All combinations, the last parameter fastest.
+/// All combinations; the last parameter changes fastest.
 fn products(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut all = vec![Vec::new()];
     for list in lists {
@@ -79,6 +83,7 @@ fn products(lists: &[Vec<f64>]) -> Vec<Vec<f64>> {
     all
 }
 
+/// Row i holds value i of each parameter.
 fn zipped(lists: &[Vec<f64>], varied: &[SweepParameter]) -> Result<Vec<Vec<f64>>, String> {
     let count = lists.first().map_or(0, Vec::len);
     if let Some(k) = lists.iter().position(|l| l.len() != count) {
@@ -88,7 +93,7 @@ fn zipped(lists: &[Vec<f64>], varied: &[SweepParameter]) -> Result<Vec<Vec<f64>>
     Ok((0..count).map(|i| lists.iter().map(|l| l[i]).collect()).collect())
 }
 
-/// Points between 0 and 1 in as many directions as parameters.
+/// Points of the unit cube with one coordinate for each parameter.
 fn unit_cube(sweep: &ParameterSweep, directions: usize) -> Result<Vec<Vec<f64>>, String> {
     let mut random = XorshiftGenerator::new(sweep.seed);
     Ok(match sweep.method {
@@ -98,6 +103,7 @@ fn unit_cube(sweep: &ParameterSweep, directions: usize) -> Result<Vec<Vec<f64>>,
     })
 }
 
+/// Latin hypercube: for each parameter one sample in each of `count` equal intervals, in random order.
 fn latin_hypercube(count: usize, directions: usize, random: &mut XorshiftGenerator) -> Vec<Vec<f64>> {
     let mut rows = vec![vec![0.0; directions]; count];
     for j in 0..directions {
@@ -112,15 +118,20 @@ fn latin_hypercube(count: usize, directions: usize, random: &mut XorshiftGenerat
     rows
 }
 
-/// From a share between 0 and 1 to a value.
+/// Maps a probability between 0 and 1 to a value in the parameter's unit.
 enum QuantileFunction {
+    /// Uniform between two values.
     Even(f64, f64),
+    /// Uniform in the logarithm; holds the logarithms of both ends.
     Logarithmic(f64, f64),
+    /// Mean and standard deviation.
     Normal(f64, f64),
+    /// Median, and standard deviation of the logarithm.
     LogNormal(f64, f64),
 }
 
 impl QuantileFunction {
+    /// The quantile function of a parameter's variation.
     fn new(v: &SweepParameter) -> Result<QuantileFunction, String> {
         let message = |e: String| format!("`{}`: {e}", v.name);
         let amount = |text: &str| Amount::parse(text).map_err(message);
@@ -150,6 +161,7 @@ impl QuantileFunction {
         }
     }
 
+    /// The value at a probability.
     fn at(&self, share: f64) -> f64 {
         match *self {
             QuantileFunction::Even(low, high) => low + share * (high - low),
@@ -160,7 +172,7 @@ impl QuantileFunction {
     }
 }
 
-/// The quantile of the standard normal distribution.
+/// The quantile of the standard normal distribution, about 8 deviations at most.
 pub fn quantile(share: f64) -> f64 {
     -SQRT_2 * erfc_inv(2.0 * share.clamp(1e-15, 1.0 - 1e-15))
 }

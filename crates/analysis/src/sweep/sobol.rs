@@ -1,9 +1,11 @@
-//! Sobol' sequences, and sensitivity indices with their confidence.
+//! Sobol' sequences, and variance-based sensitivity indices with confidence intervals.
+//!
+//! [`design`] makes the points of a sweep, [`indices`] evaluates the results of its runs. Sources: S. Joe, F. Y. Kuo,
+//! SIAM J. Sci. Comput. 30 (2008) 2635; A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259.
 
 use super::sampling::XorshiftGenerator;
 
-/// Degree, coefficients and first direction numbers of primitive polynomials. Source: S. Joe, F. Y. Kuo, SIAM J. Sci.
-/// Comput. 30 (2008) 2635.
+/// Primitive polynomials: degree, coefficients, first direction numbers. Source: Joe and Kuo, as above.
 const DIRECTIONS: [(u32, u32, &[u32]); 20] = [
     (1, 0, &[1]),
     (2, 1, &[1, 3]),
@@ -27,9 +29,10 @@ const DIRECTIONS: [(u32, u32, &[u32]); 20] = [
     (7, 4, &[1, 3, 7, 13, 13, 15, 69]),
 ];
 
+/// Bits of a coordinate.
 const BITS: u32 = 32;
 
-/// The direction integers of one direction; the first is the van der Corput sequence.
+/// The direction numbers of one coordinate; those of the first give the van der Corput sequence.
 fn integers(direction: usize) -> Vec<u32> {
     let Some(k) = direction.checked_sub(1) else { return (0..BITS).map(|i| 1 << (31 - i)).collect() };
     let (degree, coefficients, first) = DIRECTIONS[k];
@@ -47,12 +50,13 @@ fn integers(direction: usize) -> Vec<u32> {
     v
 }
 
-/// The first points of the sequence behind its origin.
+/// The first `count` points of the sequence after its origin.
 fn points(count: usize, directions: usize) -> Vec<Vec<f64>> {
     let v: Vec<Vec<u32>> = (0..directions).map(integers).collect();
     let mut x = vec![0u32; directions];
     let mut rows = Vec::with_capacity(count);
     for k in 0..count {
+        // Gray code order: point k + 1 differs from point k by the direction number of the lowest zero bit of k.
         let bit = (!(k as u32)).trailing_zeros().min(BITS - 1) as usize;
         for (x, v) in x.iter_mut().zip(&v) {
             *x ^= v[bit];
@@ -62,11 +66,14 @@ fn points(count: usize, directions: usize) -> Vec<Vec<f64>> {
     rows
 }
 
-/// Points of the design for indices: A, B, and A with one column of B after the other, for each of `count` base points.
+/// The points for sensitivity indices.
+///
+/// Each of `count` base points gives `directions` + 2 rows: A, B, and A with one coordinate of B after the other.
 ///
 /// # Errors
 /// A sentence where there are too many parameters.
 pub fn design(count: usize, directions: usize) -> Result<Vec<Vec<f64>>, String> {
+    // A and B need a coordinate of the sequence for each parameter.
     let most = DIRECTIONS.len().div_ceil(2);
     if directions > most {
         return Err(format!(
@@ -87,26 +94,26 @@ pub fn design(count: usize, directions: usize) -> Result<Vec<Vec<f64>>, String> 
     Ok(rows)
 }
 
-/// How much of a result's variance a parameter makes.
+/// The share of a result's variance that a parameter causes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SobolIndex {
-    /// Alone.
+    /// First-order index: by the parameter alone.
     pub first: f64,
-    /// With everything it acts together with.
+    /// Total index: with all interactions.
     pub total: f64,
-    /// Half the width of the 95 % interval of `first`.
+    /// Half the width of the 95 % confidence interval of `first`.
     pub first_confidence: f64,
-    /// The same of `total`.
+    /// Half the width of the 95 % confidence interval of `total`.
     pub total_confidence: f64,
 }
 
-/// Resamplings for the confidence.
+/// Number of bootstrap resamplings for the confidence intervals.
 const RESAMPLINGS: usize = 200;
 
-/// Indices from the results of a `design`, in its order; groups with a failed run (NaN) are left out. `None` where
-/// fewer than eight are left or nothing varies.
+/// One index for each parameter, from the results of a [`design`] in its order.
 ///
-/// Source: A. Saltelli et al., Comput. Phys. Commun. 181 (2010) 259, table 2 (b) and (f).
+/// Groups with a failed run (NaN) are left out. `None` where fewer than eight groups remain, or where the result is
+/// constant. Formulas: Saltelli et al., table 2 (b) and (f).
 pub fn indices(results: &[f64], directions: usize, seed: u64) -> Option<Vec<SobolIndex>> {
     let groups: Vec<&[f64]> =
         results.chunks_exact(directions + 2).filter(|g| g.iter().all(|v| v.is_finite())).collect();
@@ -133,12 +140,14 @@ pub fn indices(results: &[f64], directions: usize, seed: u64) -> Option<Vec<Sobo
     Some((0..directions).map(index).collect())
 }
 
+/// The population standard deviation.
 fn deviation(values: &[f64]) -> f64 {
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / n).sqrt()
 }
 
+/// First-order and total indices of all parameters; `None` where the result is constant.
 fn estimate(groups: &[&[f64]], directions: usize) -> Option<(Vec<f64>, Vec<f64>)> {
     let n = groups.len() as f64;
     let all = || groups.iter().flat_map(|g| g[..2].iter());

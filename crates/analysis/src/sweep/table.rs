@@ -1,29 +1,30 @@
-//! The table of a sweep: a line a run, written as runs finish, read back to go on, merged from parts.
+//! The table of a sweep: one line for each run, in CSV.
+//!
+//! Lines are written as runs finish, so an interrupted sweep can be continued from its table, and parts that were
+//! computed on several machines can be merged. A fingerprint in the first line identifies the sweep.
 
 use bramah_results::number;
 use bramah_results::parquet::ColumnValues;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// The first words of a table's first line; what follows says which sweep it belongs to.
+/// Start of the first line; the fingerprint and the number of runs follow.
 const MARK: &str = "# bramah sweep ";
 
-/// Finished runs.
+/// The finished runs of a sweep.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SweepTable {
-    /// Which sweep it belongs to.
+    /// The fingerprint of the sweep.
     pub fingerprint: String,
-    /// How many runs the whole sweep has.
+    /// Number of runs of the whole sweep.
     pub runs: usize,
     /// Names of the columns: parameters, then results.
     pub columns: Vec<String>,
-    /// By run: values of the columns, and `ok` or why the run gave no results (their values are then NaN).
+    /// By number of the run (from 1): values of the columns, and `ok` or the reason of a failure (values are then NaN).
     pub rows: BTreeMap<usize, (Vec<f64>, String)>,
 }
 
-/// A short text that two sweeps share only if they are the same.
-///
-/// FNV-1a over the words and the bits of the numbers.
+/// A hash (64-bit FNV-1a) of the words and of the bits of the numbers, in hexadecimal digits.
 pub fn fingerprint(words: &[String], numbers: &[Vec<f64>]) -> String {
     let mut hash = 0xcbf2_9ce4_8422_2325u64;
     let mut eat = |byte: u8| hash = (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
@@ -42,7 +43,7 @@ impl SweepTable {
         SweepTable { fingerprint, runs, columns, rows: BTreeMap::new() }
     }
 
-    /// The lines above the rows.
+    /// The first two lines: fingerprint and names of the columns.
     pub fn head(&self) -> String {
         let mut out = format!("{MARK}{} {}\nrun", self.fingerprint, self.runs);
         for name in &self.columns {
@@ -53,7 +54,7 @@ impl SweepTable {
         out
     }
 
-    /// A row as a line.
+    /// A run as a line.
     pub fn line(run: usize, values: &[f64], status: &str) -> String {
         let mut out = format!("{run}");
         for value in values {
@@ -64,16 +65,16 @@ impl SweepTable {
         out
     }
 
-    /// Everything, by runs.
+    /// The whole table, ordered by runs.
     pub fn text(&self) -> String {
         let lines = self.rows.iter().map(|(run, (values, status))| SweepTable::line(*run, values, status));
         self.head() + &lines.collect::<String>()
     }
 
-    /// Reads a table. A last line that was cut off is left out.
+    /// Reads a table. Lines that are incomplete are left out, as after an interruption.
     ///
     /// # Errors
-    /// A sentence where the text is no table of a sweep.
+    /// A sentence where the text is not the table of a sweep.
     pub fn read(text: &str) -> Result<SweepTable, String> {
         let no_table = || "it is not the table of a sweep".to_owned();
         let (first, rest) = text.split_once('\n').ok_or_else(no_table)?;
@@ -96,7 +97,7 @@ impl SweepTable {
         Ok(table)
     }
 
-    /// Takes over the rows of another part of the same sweep.
+    /// Adds the rows of another part of the same sweep.
     ///
     /// # Errors
     /// A sentence where it belongs to another sweep.
@@ -108,7 +109,7 @@ impl SweepTable {
         Ok(())
     }
 
-    /// All rows as columns with their types: `run`, parameters and results, `status`.
+    /// All columns with their types: `run`, parameters and results, `status`.
     pub fn typed(&self) -> Vec<(String, ColumnValues<'_>)> {
         let run = ColumnValues::Integer(self.rows.keys().map(|&run| i64::try_from(run).ok()).collect());
         let numbers = |k: usize| ColumnValues::Real(self.rows.values().map(|row| row.0[k]).collect());
@@ -117,17 +118,18 @@ impl SweepTable {
         std::iter::once(("run".to_owned(), run)).chain(columns).chain([("status".to_owned(), status)]).collect()
     }
 
-    /// The values of one column by runs; NaN where a run is missing.
+    /// The values of one column for all runs; NaN where a run is missing.
     pub fn column(&self, index: usize) -> Vec<f64> {
         (1..=self.runs).map(|run| self.rows.get(&run).map_or(f64::NAN, |r| r.0[index])).collect()
     }
 }
 
+/// A cell, in quotes where it holds a comma or quotes.
 fn quoted(cell: &str) -> String {
     if cell.contains([',', '"']) { format!("\"{}\"", cell.replace('"', "\"\"")) } else { cell.to_owned() }
 }
 
-/// The cells of a line, quotes taken off.
+/// The cells of a line without their quotes.
 fn cells(line: &str) -> Vec<String> {
     let mut out = vec![String::new()];
     let mut inside = false;

@@ -1,4 +1,8 @@
-//! Equation sections of every component, made scalar; `when` equations and algorithm sections have files of their own.
+//! Equation sections of every component, made scalar.
+//!
+//! [`EquationFlattener`] walks the classes of all components. `for` equations are unrolled, `if` equations are decided
+//! or become conditional expressions (MLS 8.3), array equations become one equation for each element. `when_equations`
+//! and `algorithm_sections` have the rest of its methods. `flatten` calls [`EquationFlattener::walk`] once.
 
 use super::numbers::ComponentNumbers;
 use super::{
@@ -13,24 +17,30 @@ use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::ast::{self, ClassBody, EquationKind, Expr, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 
-/// Scalar sides of an equation with the place it comes from.
+/// The two sides of a scalar equation with the place it comes from.
 pub(super) struct EquationSides {
     pub(super) lhs: ExprId,
     pub(super) rhs: ExprId,
     pub(super) span: Span,
 }
 
+/// Translates equation and algorithm sections and writes the results into the flat model.
 pub(super) struct EquationFlattener<'w, 'a, 'l> {
+    /// The component tree, which evaluates expressions.
     pub(super) instance: &'w mut Instance<'a, 'l>,
+    /// The numbers of components in the flat model.
     pub(super) numbers: &'w ComponentNumbers,
+    /// The result.
     pub(super) flat: &'w mut FlatModel,
-    /// Assertions met inside the equations of an `if` with their conditions.
+    /// The conditions of the `if` equations around the equation being read, outermost first. Assertions hold only under
+    /// them.
     pub(super) guards: Vec<ExprId>,
-    /// Variables determined so far by the branch of a `when` that is being walked.
+    /// The variables that the branch of a `when` being read has determined so far.
     pub(super) determined: Vec<VarId>,
 }
 
 impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
+    /// A walker that has read nothing yet.
     pub(super) fn new(
         instance: &'w mut Instance<'a, 'l>,
         numbers: &'w ComponentNumbers,
@@ -39,6 +49,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         EquationFlattener { instance, numbers, flat, guards: Vec::new(), determined: Vec::new() }
     }
 
+    /// Reads the sections of all components, in their order, and of all base classes of each.
     pub(super) fn walk(&mut self, scopes: &[ScopeId]) {
         for &scope in scopes {
             let mark = self.instance.diagnostics.len();
@@ -47,6 +58,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
                 let ClassBody::Long(body) = &base.ast.body else { continue };
                 self.body(body, LookupContext { scope, base: i });
             }
+            // Messages of a library component get the place of the component in the user's model.
+            // Messages of a library component get the place of the component in the user's model.
             if self.instance.diagnostics.len() > mark
                 && let Some(outermost) = self.instance.outermost(scope)
             {
@@ -56,6 +69,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
+    /// Reads the sections of one class body. Assertions of initial sections hold at the start only.
     pub(super) fn body(&mut self, body: &'a ast::LongBody, view: LookupContext) {
         let pairs = self.equations(&body.equations, view);
         self.push(pairs, view, false);
@@ -73,11 +87,13 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
+    /// The origin of what stands at a place in a component.
     pub(super) fn origin(&self, span: Span, view: LookupContext) -> ElementOrigin {
         let instance = self.numbers.of(view.scope);
         ElementOrigin { span, instance, kind: OriginKind::Declared }
     }
 
+    /// Appends scalar equations to the model or to its initial equations.
     pub(super) fn push(&mut self, pairs: Vec<EquationSides>, view: LookupContext, initial: bool) {
         for p in pairs {
             let origin = self.origin(p.span, view);
@@ -90,7 +106,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
-    /// Scalar equations of a list; `when` and `assert` go straight into the flat model.
+    /// The scalar equations of a list. `when`, `assert` and calls go straight into the flat model.
     pub(super) fn equations(&mut self, equations: &'a [ast::Equation], view: LookupContext) -> Vec<EquationSides> {
         let mut pairs = Vec::new();
         for e in equations {
@@ -100,7 +116,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         pairs
     }
 
-    /// What the equation just read needs to have a meaning, under the conditions around it.
+    /// Adds assertions that the equation just read needs to have a meaning, such as those of called functions, under
+    /// the conditions around it.
     pub(super) fn watch(&mut self, view: LookupContext) {
         let mut calls = self.instance.statements().take_calls();
         for call in &mut calls {
@@ -111,8 +128,11 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         watch(self.instance, self.flat, calls, self.numbers.of(view.scope));
     }
 
+    /// Reads one equation and appends its scalar equations to `out`.
     pub(super) fn equation(&mut self, e: &'a ast::Equation, view: LookupContext, out: &mut Vec<EquationSides>) {
         match &e.kind {
+            // `network` has read connections.
+            // `network` has read connections.
             EquationKind::Connect(..) => {}
             EquationKind::Equal(l, r) => self.equal(l, r, view, e.span, out),
             EquationKind::For { iterators, body } => self.for_equation(iterators, body, view, out),
@@ -123,6 +143,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
+    /// Unrolls a `for` equation (MLS 8.3.2): reads the body once for each combination of values of its iterators, the
+    /// last iterator fastest.
     pub(super) fn for_equation(
         &mut self,
         iterators: &'a [ast::ForIndex],
@@ -144,6 +166,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
+    /// Reads an equation between two expressions. A tuple on the left takes the results of a call.
     pub(super) fn equal(
         &mut self,
         l: &'a Expr,
@@ -162,6 +185,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
+    /// Reads `(a, , b) = f(x)`: one equation for each target that is given. The call may have more results than
+    /// targets.
     pub(super) fn tuple(
         &mut self,
         targets: &'a [Option<Expr>],
@@ -190,6 +215,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
+    /// Appends one scalar equation for each pair of elements of two values. Reports values of different shape or type,
+    /// and texts, which have no equations.
     pub(super) fn equal_values(
         &mut self,
         a: &ModelicaValue,
@@ -197,6 +224,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         span: Span,
         out: &mut Vec<EquationSides>,
     ) {
+        // Of several results of a call an expression takes the first (MLS 12.4.3).
+        // Of several results of a call an expression takes the first (MLS 12.4.3).
         let first = |v: &ModelicaValue| match v {
             ModelicaValue::Tuple(values) => values[0].clone(),
             other => other.clone(),
@@ -218,7 +247,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         out.extend(pairs);
     }
 
-    /// An `if` decided by parameters is decided now; another becomes conditional equations.
+    /// Reads an `if` equation. A condition over parameters selects its branch now (MLS 8.3.4); any other becomes part
+    /// of conditional equations.
     pub(super) fn if_equation(
         &mut self,
         branches: &'a [(Expr, Vec<ast::Equation>)],
@@ -241,6 +271,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
             );
             return;
         };
+        // A parameter that is found at the start is not known now.
+        // A parameter that is found at the start is not known now.
         if self.instance.variability(test) <= Variability::Parameter && !self.instance.found_at_start(test) {
             match self.instance.evaluator().constant_boolean(condition, view) {
                 Some(true) => {
@@ -253,6 +285,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
             }
             return;
         }
+        // Both branches are read, each under its condition, with the following branches nested in `else`.
+        // Both branches are read, each under its condition, with the following branches nested in `else`.
         self.guards.push(test);
         let a = self.equations(body, view);
         self.guards.pop();
@@ -264,7 +298,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         self.merge(test, a, b, span, out);
     }
 
-    /// `if c then a = x; else a = y;` becomes `a = if c then x else y`; branches must have equally many equations.
+    /// Merges the equations of two branches into conditional ones: `if c then a = x; else a = y;` becomes
+    /// `a = if c then x else y`. Branches must have the same number of equations (MLS 8.3.4).
     pub(super) fn merge(
         &mut self,
         test: ExprId,
@@ -283,19 +318,24 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
         let pool = &mut self.instance.exprs;
         for p in a {
+            // Equations with the same left side belong together; the others are paired in their order.
+            // Equations with the same left side belong together; the others are paired in their order.
             let at = b.iter().position(|q| q.lhs == p.lhs).unwrap_or(0);
             let q = b.remove(at);
             let span = p.span;
             if p.lhs == q.lhs {
                 out.push(EquationSides { lhs: p.lhs, rhs: pool.if_(test, p.rhs, q.rhs), span });
             } else {
+                // Different left sides: the residuals are selected instead.
+                // Different left sides: the residuals are selected instead.
                 let (x, y) = (pool.sub(p.lhs, p.rhs), pool.sub(q.lhs, q.rhs));
                 out.push(EquationSides { lhs: pool.if_(test, x, y), rhs: Exprs::ZERO, span });
             }
         }
     }
 
-    /// `Connections.conserved(quantity, rate, state)`, of scalars.
+    /// Reads `Connections.conserved(quantity, rate, state)`, of scalars. It is no statement of the MLS but of this
+    /// compiler.
     pub(super) fn conserved(&mut self, call: &'a Expr, view: LookupContext, span: Span) {
         const FORM: &str =
             "`Connections.conserved(quantity, rate, state)` takes three real numbers, the last one a variable";
@@ -314,15 +354,18 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
+    /// A condition that needs to hold at the start only.
     pub(super) fn at_start_only(&mut self, condition: ExprId) -> ExprId {
         let start = self.instance.exprs.intern(ExprNode::Initial);
         self.instance.exprs.implies(start, condition)
     }
 
+    /// Reports a call that is not as it must be.
     pub(super) fn bad_call(&mut self, span: Span, message: &str) {
         self.instance.diagnostics.push(Diagnostic::new(Code::BadCall, message).at(span, ""));
     }
 
+    /// Reports a call that is allowed inside `when` only.
     pub(super) fn only_in_when(&mut self, name: &str, span: Span) {
         self.instance.diagnostics.push(
             Diagnostic::new(Code::BadCall, format!("`{name}` can only stand inside a `when`"))
@@ -331,6 +374,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         );
     }
 
+    /// Reads an equation that is a call: `assert`, a statement about connections, or a function without results.
     pub(super) fn call(&mut self, call: &'a Expr, view: LookupContext, span: Span) {
         let ExprKind::Call { function, .. } = &call.kind else { return };
         match function.parts[0].name.name.as_str() {
@@ -341,7 +385,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
             "reinit" | "terminate" => {
                 self.only_in_when(function.parts[0].name.name.as_str(), span);
             }
-            // a statement about the connection graph, which `network` has read
+            // A statement about the connection graph, which `network` has read.
             "Connections" if network::is_graph_statement(function) => {}
             "Connections" if function.parts.get(1).is_some_and(|p| p.name.name.as_str() == "conserved") => {
                 self.conserved(call, view, span);
@@ -356,7 +400,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
-    /// An assertion in the branches of the `if` equations around it.
+    /// Appends an assertion under the conditions around it. One that always holds is dropped.
     pub(super) fn push_guarded(&mut self, assert: Option<FlatAssertion>) {
         let Some(mut assert) = assert else { return };
         for guard in self.guards.clone().into_iter().rev() {
@@ -367,17 +411,21 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         }
     }
 
+    /// Reads an `assert`. `None` after a message.
     pub(super) fn assertion(&mut self, call: &'a Expr, view: LookupContext, span: Span) -> Option<FlatAssertion> {
         let AssertArguments { condition, message: text, warning } = self.instance.statements().assertion(call, view)?;
         Some(FlatAssertion { condition, message: message(text), warning, origin: self.origin(span, view) })
     }
 }
 
-/// What expressions of an instance need to have a meaning, each once.
+/// Appends assertions that expressions need to have a meaning, each once. `holder` is the component that contains the
+/// expressions.
 pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls: Vec<AlgorithmCall>, holder: u32) {
     for call in calls {
         let origin = ElementOrigin { span: call.span, instance: holder, kind: OriginKind::Declared };
         let Some(assert) = assert_of(instance, call, origin) else { continue };
+        // Repetitions come from one expression, so the last few assertions are enough to compare with.
+        // Repetitions come from one expression, so the last few assertions are enough to compare with.
         let known = |a: &FlatAssertion| a.condition == assert.condition && a.origin.span == origin.span;
         if assert.condition != Exprs::ONE && !flat.asserts.iter().rev().take(8).any(known) {
             flat.asserts.push(assert);
@@ -385,7 +433,7 @@ pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls
     }
 }
 
-/// An `assert` of an algorithm as one of the model; `None` for a `terminate`.
+/// An `assert` of an algorithm or function as one of the model; `None` for a `terminate`, which has no condition.
 pub(super) fn assert_of(
     instance: &mut Instance<'_, '_>,
     call: AlgorithmCall,
@@ -395,6 +443,7 @@ pub(super) fn assert_of(
     Some(FlatAssertion { condition, message: message(call.message), warning: call.warning, origin })
 }
 
+/// The template of a message text, with adjacent texts joined. Empty without a text.
 pub(super) fn message(text: Option<ModelicaValue>) -> MessageTemplate {
     match text {
         Some(ModelicaValue::Text(parts)) => {

@@ -1,4 +1,8 @@
-//! From the component tree to scalar variables and equations.
+//! Flattening: from the component tree to scalar variables and equations.
+//!
+//! [`flatten`] is the entry of the module. It numbers the components, makes the variables with their attributes and
+//! bindings, lets [`EquationFlattener`] walk the equation sections, writes the equations of connections (MLS 9.2), and
+//! checks the balance of the components.
 
 use super::census::BalanceCensus;
 use super::equations::EquationFlattener;
@@ -15,7 +19,9 @@ use bramah_syntax::ast::{self, ClassBody, Modification, ModificationArgumentKind
 use bramah_syntax::diag::{Code, Diagnostic, StageResult};
 use bramah_syntax::symbol::Symbol;
 
-/// Flattens an instance. The instance's expression pool moves into the flat model.
+/// Flattens an instance. The expression pool and the diagnostics of the instance move into the result.
+///
+/// The result always has a value; it may have errors among its diagnostics.
 pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResult<FlatModel> {
     let scopes = component_scopes(instance);
     let mut flat = FlatModel { class: class_name(instance, instance.root), ..FlatModel::default() };
@@ -23,6 +29,8 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResul
     flat.instances = scopes.iter().map(|&s| instance_info(instance, s, &numbers)).collect();
     flat.experiment = experiment(instance);
     flat.varied = instance.varied;
+    // Before any expression is evaluated: `inStream` needs to know the joined streams.
+    // Before any expression is evaluated: `inStream` needs to know the joined streams.
     streams::prepare(instance, network);
     variables(instance, &numbers, &mut flat);
     instance.parameters().check_texts();
@@ -31,6 +39,8 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResul
     overconstrained::equations(instance, network, &numbers, &mut flat);
     streams::equations(instance, network, &numbers, &mut flat);
     discrete::check(instance, &flat);
+    // After all evaluation: only then it is known which parameters the structure depends on.
+    // After all evaluation: only then it is known which parameters the structure depends on.
     for (v, &i) in flat.variables.iter_mut().zip(&instance.order) {
         if v.variability == Variability::Parameter && instance.variables[i as usize].structural {
             v.variability = Variability::Constant;
@@ -41,9 +51,13 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResul
         .iter()
         .map(|e| (e.name.clone(), e.literals.iter().map(|l| l.as_str().to_string()).collect()))
         .collect();
+    // Before the pool moves out of the instance, which evaluates types for this.
+    // Before the pool moves out of the instance, which evaluates types for this.
     let constraints = instance.builder().constraint_sizes();
     flat.exprs = std::mem::take(&mut instance.exprs);
     let mut diagnostics = std::mem::take(&mut instance.diagnostics);
+    // With equations missing because of errors, the counts would mislead.
+    // With equations missing because of errors, the counts would mislead.
     if !diagnostics.iter().any(Diagnostic::is_error) {
         let census = BalanceCensus::take(instance, network, &flat, &scopes, &constraints);
         let signals = ports::SignalConnections::new(instance, network, &flat, &census, &scopes);
@@ -53,23 +67,26 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResul
         diagnostics.extend(signals.joined_outputs());
         flat.doubts = doubts;
     }
-    // Bodies of functions were built in the same pool, with variables of their own.
+    // Bodies of functions were built in the same pool, with variables of their own; later stages must not see these.
     if !flat.exprs.functions.is_empty() {
         flat.compact();
     }
     StageResult::new(flat, diagnostics)
 }
 
+/// The full name of the class of a scope.
 fn class_name(instance: &Instance<'_, '_>, scope: ScopeId) -> String {
     instance.library.full_name(instance.scope(scope).template.class)
 }
 
+/// The record of a component for messages. The model itself, which has no owner, is its own parent.
 fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &ComponentNumbers) -> InstanceInfo {
     let s = instance.scope(scope);
     let parent = s.owner.map_or(0, |owner| numbers.of(owner));
     InstanceInfo { name: s.name.clone(), class: class_name(instance, scope), parent, span: s.span }
 }
 
+/// Makes all variables, in declaration order.
 fn variables(instance: &mut Instance<'_, '_>, numbers: &ComponentNumbers, flat: &mut FlatModel) {
     flat.variables.reserve_exact(instance.order.len());
     for k in 0..instance.order.len() {
@@ -79,9 +96,12 @@ fn variables(instance: &mut Instance<'_, '_>, numbers: &ComponentNumbers, flat: 
     }
 }
 
+/// Makes the flat variable of entry `i` of `Instance::variables`, with attributes and binding.
 fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &ComponentNumbers, flat: &mut FlatModel) -> FlatVariable {
     let data = &instance.variables[i as usize];
     let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::Declared };
+    // Only inputs and outputs of the model itself connect to the outside.
+    // Only inputs and outputs of the model itself connect to the outside.
     let input = data.top && data.causality == Some(ast::CausalityPrefix::Input);
     let output = data.top && data.causality == Some(ast::CausalityPrefix::Output);
     let mut v = FlatVariable {
@@ -91,6 +111,8 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &ComponentNumbers,
         settable: data.variability == Variability::Parameter && !data.final_ && !data.hidden,
         hidden: data.hidden,
         unwanted: data.unwanted,
+        // The default of `fixed` is true for parameters and false for variables (MLS 4.8).
+        // The default of `fixed` is true for parameters and false for variables.
         fixed: data.variability <= Variability::Parameter,
         description: data.description.map(Into::into),
         state_select: if data.ty == ScalarType::Real { data.state_select } else { StateSelect::Default },
@@ -101,12 +123,14 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &ComponentNumbers,
     v
 }
 
-/// In K, degC, ...
+/// Whether a unit measures temperature: K, degC and others of the same dimension.
 fn is_temperature(unit: &str) -> bool {
     let parse = bramah_expr::units::MeasurementUnit::parse;
     matches!((parse(unit), parse("K")), (Ok(unit), Ok(kelvin)) if unit.dimension == kelvin.dimension)
 }
 
+/// Evaluates the attributes of a variable. A `start`, `min`, `max` or `nominal` that changes during the run is an
+/// error.
 fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
     for k in 0..instance.variables[i as usize].attributes.len() {
         let (name, b) = instance.variables[i as usize].attributes[k].clone();
@@ -120,6 +144,8 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
                 v.display_unit =
                     instance.parameters().text_attribute(i, "displayUnit").filter(|u| !u.is_empty()).map(Into::into);
             }
+            // Evaluated for its errors only.
+            // Evaluated for its errors only.
             "quantity" => {
                 instance.parameters().text_attribute(i, "quantity");
             }
@@ -165,13 +191,15 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
     }
 }
 
-/// How far out a start value was given, and how far that reaches in: where it is written, or further out where one of the
-/// parameters in it is.
+/// How far outside a start value was given, and how far from there it reaches in: `depth` and `reach` of a
+/// [`StartValueConfidence`].
+///
+/// The place is where the value is written, or further out where one of the parameters in it gets its value.
 fn given(instance: &Instance<'_, '_>, variable: u32, written: ScopeId, start: Option<ExprId>) -> (u32, i32) {
     let mut least = depth(instance, written);
     for parameter in start.into_iter().flat_map(|e| instance.exprs.variables(e)) {
         let mut next = Some(parameter);
-        // parameters in a circle have a message of their own, but this must end in any case
+        // Parameters in a circle have a message of their own, but this loop must end in any case.
         for _ in 0..LONGEST_CHAIN {
             let Some(p) = next else { break };
             let Some(b) = &instance.variable(p).binding else { break };
@@ -184,10 +212,10 @@ fn given(instance: &Instance<'_, '_>, variable: u32, written: ScopeId, start: Op
     (least, i32::try_from(least).unwrap_or(i32::MAX).saturating_sub(i32::try_from(own).unwrap_or(i32::MAX)))
 }
 
-/// Parameters bound to each other in a chain are followed so far.
+/// The longest chain of parameters bound to each other that is followed.
 const LONGEST_CHAIN: usize = 30;
 
-/// The parameter that a binding consists of.
+/// The parameter that a binding consists of; `None` where it is any other expression, or a name with dots.
 fn lone_parameter(instance: &Instance<'_, '_>, view: LookupContext, expr: &ast::Expr) -> Option<VarId> {
     let ast::ExprKind::Reference(r) = &expr.kind else { return None };
     let [part] = r.parts.as_slice() else { return None };
@@ -198,7 +226,8 @@ fn lone_parameter(instance: &Instance<'_, '_>, view: LookupContext, expr: &ast::
     Some(instance.variables[*v as usize].id)
 }
 
-/// Components around the elements of a scope; more than any for those of packages.
+/// The number of components around the elements of a scope, 0 for the model itself. `u32::MAX` for scopes outside the
+/// model, such as packages.
 fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
     let mut depth = 0;
     while scope != instance.root {
@@ -209,10 +238,12 @@ fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
     depth
 }
 
-/// Bindings of parameters stay with the variable; bindings of other variables are equations. That of a stream is what leaves
-/// through the port of a component that says nothing else: it gives way to parts that are joined to the port.
+/// Evaluates the binding of a variable. It stays with a parameter, a constant or a top-level input; for other variables
+/// it becomes an equation (MLS 4.4).
 fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: &mut FlatModel) {
     let parameter = v.variability <= Variability::Parameter;
+    // The binding of a stream variable of a port applies only where the component has no parts joined to the port.
+    // The binding of a stream variable of a port applies only where the component has no parts joined to the port.
     if instance.streams.outside.contains(&i) {
         return;
     }
@@ -227,6 +258,8 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: 
     let Some(value) = value else { return };
     let Some(value) = instance.parameters().coerce(value, v.ty, &v.name, b.expr.span) else { return };
     let Some((e, _)) = value.scalar() else { return };
+    // Calls inside the binding may assert something about their arguments.
+    // Calls inside the binding may assert something about their arguments.
     equations::watch(instance, flat, watched, v.origin.instance);
     if v.variability == Variability::Constant && instance.variability(e) == Variability::Parameter {
         instance.diagnostics.push(
@@ -249,11 +282,11 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: 
         );
         return;
     }
-    // What varies is no default that could be held: such an input is given by its own equation.
+    // A binding that varies is no default that could be held: such an input is given by its own equation.
     v.input &= instance.variability(e) <= Variability::Parameter;
     if parameter || v.input {
         v.binding = Some(e);
-        // an input starts, and unless it is driven stays, at its default
+        // An input starts at its default, and stays there unless it is driven.
         v.start = if v.input { Some(e) } else { v.start };
         return;
     }
@@ -266,7 +299,7 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: 
     flat.equations.push(FlatEquation { lhs, rhs: e, origin });
 }
 
-/// A parameter without a value takes its start value, with no remark if that was given on purpose (MLS 8.6).
+/// A parameter without a binding takes its start value (MLS 8.6). Without that it is an error.
 fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
     if v.start.is_some() {
         v.binding = v.start;
@@ -286,8 +319,10 @@ fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) 
     );
 }
 
-/// Connection equations: potentials equal, flows summed, open flows zero (MLS 9.2).
+/// Appends the equations of connections: potentials equal, flows summed, open flows zero (MLS 9.2).
 fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &ComponentNumbers, flat: &mut FlatModel) {
+    // A set of `n` potentials gives `n - 1` equations, each with the first member.
+    // A set of `n` potentials gives `n - 1` equations, each with the first member.
     for set in &network.potentials {
         let first = instance.variables[set.members[0].0 as usize].id;
         let lhs = instance.exprs.var(first);
@@ -299,6 +334,8 @@ fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Com
     }
     for set in &network.flows {
         let mut sum: Option<ExprId> = None;
+        // Flows of inside connectors count positive, those of outside connectors negative (MLS 9.2).
+        // Flows of inside connectors count positive, those of outside connectors negative (MLS 9.2).
         for &(i, outside) in &set.members {
             let e = instance.exprs.var(instance.variables[i as usize].id);
             sum = Some(match (sum, outside) {
@@ -311,12 +348,16 @@ fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Com
         let origin = ElementOrigin { span: set.span, instance: numbers.of(set.scope), kind: OriginKind::ConnectFlow };
         flat.equations.push(FlatEquation { lhs: sum.unwrap_or(Exprs::ZERO), rhs: Exprs::ZERO, origin });
     }
+    // Members of a bus that nothing gives a value.
+    // Members of a bus that nothing gives a value.
     for &i in &network.unused {
         let data = &instance.variables[i as usize];
         let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
         let lhs = instance.exprs.var(data.id);
         flat.equations.push(FlatEquation { lhs, rhs: Exprs::ZERO, origin });
     }
+    // Flows of ports that nothing is connected to from outside.
+    // Flows of ports that nothing is connected to from outside.
     for &i in &network.open {
         let data = &instance.variables[i as usize];
         let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
@@ -325,7 +366,7 @@ fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Com
     }
 }
 
-/// The `experiment` annotation of the model or of a class it extends.
+/// The `experiment` annotation of the model, or else of the first class that it extends and that has one.
 fn experiment(instance: &mut Instance<'_, '_>) -> ExperimentAnnotation {
     let template = instance.scope(instance.root).template.clone();
     let mut experiment = ExperimentAnnotation::default();
@@ -337,7 +378,7 @@ fn experiment(instance: &mut Instance<'_, '_>) -> ExperimentAnnotation {
         let number = |name: &str| argument(m, name).and_then(|m| m.value.as_ref()).and_then(ast::Expr::as_number);
         experiment.start_time = experiment.start_time.or(number("StartTime"));
         experiment.stop_time = experiment.stop_time.or(number("StopTime"));
-        // Tools write 0 where a number of rows was chosen instead.
+        // Tools write 0 where a number of output rows was chosen instead.
         experiment.interval = experiment.interval.or(number("Interval").filter(|interval| *interval > 0.0));
         experiment.tolerance = experiment.tolerance.or(number("Tolerance"));
         break;
@@ -345,6 +386,7 @@ fn experiment(instance: &mut Instance<'_, '_>) -> ExperimentAnnotation {
     experiment
 }
 
+/// The modification of `name` among the arguments of an annotation.
 fn argument<'m>(m: &'m Modification, name: &str) -> Option<&'m Modification> {
     let wanted = Symbol::new(name);
     m.arguments.iter().find_map(|a| match &a.kind {

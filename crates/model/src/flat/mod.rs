@@ -1,4 +1,11 @@
 //! The flat model: scalar variables and equations, each with its origin.
+//!
+//! Enters: an `Instance` (the component tree) and its `Network` (the connection sets). Leaves: a [`FlatModel`], in
+//! which no components, arrays or connections are left. [`flatten()`] makes it; `compile` calls that, and [`explain()`]
+//! where `structure` finds the model singular. The text form is close to flat Modelica (MLS 5.6).
+//!
+//! `equations`, `when_equations` and `algorithm_sections` translate what the classes state; `streams` and
+//! `overconstrained` add equations of connections; `census`, `balance`, `ports` and `discrete` check the result.
 
 mod algorithm_sections;
 mod balance;
@@ -23,7 +30,7 @@ pub use bramah_expr::types::{MessagePart, ScalarType, StateSelect, Variability};
 use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::diag::{Diagnostic, Span};
 
-/// The flattened circuit.
+/// The flattened model. All `ExprId`s refer to `exprs`, all `VarId`s to `variables`.
 #[derive(Clone, Debug, Default)]
 pub struct FlatModel {
     /// The class that was instantiated, by its full name.
@@ -36,7 +43,7 @@ pub struct FlatModel {
     pub equations: Vec<FlatEquation>,
     /// Equations of the `initial equation` sections. `fixed` starts are not listed here: see [`FlatVariable::fixed`].
     pub initial_equations: Vec<FlatEquation>,
-    /// `when` clauses (also those of algorithms, already made single assignments).
+    /// `when` clauses, also those of algorithms. Each branch assigns a variable at most once.
     pub whens: Vec<WhenClause>,
     /// `assert`s outside `when`.
     pub asserts: Vec<FlatAssertion>,
@@ -44,19 +51,21 @@ pub struct FlatModel {
     pub conserved: Vec<ConservationDeclaration>,
     /// Component instances, parents before children; entry 0 is the model itself with an empty name.
     pub instances: Vec<InstanceInfo>,
-    /// What seems wrong with signals or with the balance of single components: reported when the equations turn out not to
-    /// determine the unknowns.
+    /// What seems wrong with signals or with the balance of single components. It is reported only when the equations
+    /// turn out not to determine the unknowns.
     pub doubts: Vec<Diagnostic>,
-    /// Enumeration types: full name and literals.
+    /// Enumeration types, each with its full name and its literals in order.
     pub enumerations: Vec<(String, Vec<String>)>,
     /// The model's `experiment` annotation.
     pub experiment: ExperimentAnnotation,
-    /// Parameters get other values without compiling again: none that is 0 may be fixed with the structure for that.
+    /// Parameters will get other values without compiling again, so none of them may be fixed with the structure
+    /// because its value is 0.
     pub varied: bool,
 }
 
 impl FlatModel {
-    /// Whether a parameter's binding reads no other parameter: the roots of all parameter values.
+    /// Whether a variable is a parameter whose binding reads no other parameter and not the time. All other parameters
+    /// follow from such roots.
     pub fn is_root(&self, v: VarId) -> bool {
         let variable = &self.variables[v.index()];
         let reads = |e: ExprId| {
@@ -68,7 +77,7 @@ impl FlatModel {
     }
 }
 
-/// `annotation(experiment(...))`; `None` where nothing is said.
+/// `annotation(experiment(...))`. A field is `None` where the annotation does not give it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[allow(missing_docs, reason = "the names of the annotation, in SI units")]
 pub struct ExperimentAnnotation {
@@ -96,7 +105,7 @@ pub struct InstanceInfo {
 pub struct ElementOrigin {
     /// The place in the text.
     pub span: Span,
-    /// The instance that holds it: index into `FlatModel::instances`.
+    /// The instance that contains it: index into `FlatModel::instances`.
     pub instance: u32,
     /// Why it exists.
     pub kind: OriginKind,
@@ -105,7 +114,7 @@ pub struct ElementOrigin {
 /// Why a variable or equation exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OriginKind {
-    /// Written by the user.
+    /// Written by the user as an equation, statement or declaration.
     Declared,
     /// The binding of a declaration or a modifier.
     Binding,
@@ -123,13 +132,13 @@ pub enum OriginKind {
     WhenCondition,
     /// A `fixed` start value, or one chosen by the compiler.
     Start,
-    /// A start value that is not `fixed` and yields to one that is.
+    /// A start value that is not `fixed` and gives way to one that is.
     Guess,
     /// Made by the compiler for another reason.
     Made,
 }
 
-/// A scalar variable.
+/// A scalar variable with its attributes.
 #[derive(Clone, Debug)]
 pub struct FlatVariable {
     /// Full dotted name with indices, as in `pump.b.p` or `v[3].p`.
@@ -156,7 +165,8 @@ pub struct FlatVariable {
     pub start: Option<ExprId>,
     /// How much `start` counts beside the starts of others, where not all can hold.
     pub confidence: StartValueConfidence,
-    /// `fixed`: the start value holds at the beginning of the run (for parameters: false means found at initialization).
+    /// `fixed`: the start value holds at the beginning of the run. For a parameter, false means that initialization
+    /// finds it.
     pub fixed: bool,
     /// `min`
     pub min: Option<ExprId>,
@@ -166,7 +176,7 @@ pub struct FlatVariable {
     pub nominal: Option<ExprId>,
     /// `unit`, as written.
     pub unit: Option<Box<str>>,
-    /// A difference of temperatures: a value in degC means as many K.
+    /// A difference of temperatures: a value in degC converts to as many K, without the offset.
     pub difference: bool,
     /// `displayUnit`, as written.
     pub display_unit: Option<Box<str>>,
@@ -178,12 +188,14 @@ pub struct FlatVariable {
     pub origin: ElementOrigin,
 }
 
-/// Who gave a start value that is not `fixed`: of two for one quantity the one given further outside counts (the
-/// confidence numbers of MLS 8.6.2), and of two given equally far outside the one that reaches further in. Less is more
-/// confident.
+/// Who gave a start value that is not `fixed`.
+///
+/// Of two start values for one quantity the one given further outside counts (the confidence numbers of MLS 8.6.2). Of
+/// two given equally far outside, the one that reaches further in counts. Smaller is more confident; the fields are
+/// compared in their order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct StartValueConfidence {
-    /// `fixed = false` was written: the start of any other goes first.
+    /// `fixed = false` was written: the start of any other variable goes first.
     pub free: bool,
     /// Components around the place where the value was written; 0 in the model itself.
     pub depth: u32,
@@ -192,31 +204,31 @@ pub struct StartValueConfidence {
 }
 
 impl StartValueConfidence {
-    /// Whether the model itself says how one of its components starts.
+    /// Whether the model itself states how one of its components starts.
     pub fn is_said(&self) -> bool {
         !self.free && self.depth == 0 && self.reach < 0
     }
 
-    /// Whether it is the start of a component: by its class, or as the model says.
+    /// Whether it is the start of a component: given by its class, or by the model that contains it.
     pub fn is_of_component(&self) -> bool {
         self.depth != u32::MAX && (self.depth > 0 || self.reach < 0)
     }
 }
 
 impl Default for StartValueConfidence {
-    /// Of a variable without a start.
+    /// The confidence of a variable without a start: the least of all.
     fn default() -> Self {
         StartValueConfidence { free: false, depth: u32::MAX, reach: 0 }
     }
 }
 
 impl FlatVariable {
-    /// Whether its start is a condition: `fixed`, or said by the model of one of its components.
+    /// Whether its start is a condition: `fixed`, or stated by the model for one of its components.
     pub fn start_is_said(&self) -> bool {
         self.fixed || self.start.is_some() && self.confidence.is_said()
     }
 
-    /// A variable of which nothing is said but this: no attributes, visible, not fixed.
+    /// A variable with nothing but these properties: no attributes, visible, not fixed.
     pub fn plain(name: impl Into<String>, ty: ScalarType, variability: Variability, origin: ElementOrigin) -> Self {
         FlatVariable {
             name: name.into(),
@@ -269,7 +281,7 @@ pub struct WhenClause {
 }
 
 impl WhenClause {
-    /// The variables that its branches assign.
+    /// The variables that its branches assign, in the order of the assignments. One may come several times.
     pub fn assigned(&self) -> impl Iterator<Item = VarId> {
         self.branches.iter().flat_map(|b| &b.actions).filter_map(|a| match a {
             WhenAction::Assign { variable, .. } => Some(*variable),
@@ -283,11 +295,11 @@ impl WhenClause {
 pub struct WhenBranch {
     /// Conditions; `ExprNode::Initial` stands for `initial()`.
     pub conditions: Vec<ExprId>,
-    /// What is done.
+    /// What happens when the branch fires, in order.
     pub actions: Vec<WhenAction>,
 }
 
-/// What a `when` does.
+/// A statement in a branch of a `when`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WhenAction {
     /// `v = value`
@@ -323,15 +335,15 @@ pub enum WhenAction {
     },
 }
 
-/// `Connections.conserved(quantity, rate, state)`: what the equations imply, said so that the solver can integrate the
-/// quantity and let the state follow.
+/// `Connections.conserved(quantity, rate, state)`: a balance that the equations imply. It is stated so that the solver
+/// can integrate the quantity and compute the state from it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConservationDeclaration {
-    /// What changes by its rate alone: an expression of states.
+    /// A quantity that changes by its rate alone: an expression of states.
     pub quantity: ExprId,
-    /// Its rate.
+    /// Its time derivative.
     pub rate: ExprId,
-    /// The variable that follows from it.
+    /// The variable that follows from it, as an expression `Var`.
     pub state: ExprId,
     /// Where it is stated.
     pub origin: ElementOrigin,
@@ -340,9 +352,9 @@ pub struct ConservationDeclaration {
 /// `assert(condition, message, level)`
 #[derive(Clone, Debug, PartialEq)]
 pub struct FlatAssertion {
-    /// Must hold.
+    /// What must hold.
     pub condition: ExprId,
-    /// What to say otherwise.
+    /// The text for the user where it does not hold.
     pub message: MessageTemplate,
     /// True for `AssertionLevel.warning`.
     pub warning: bool,

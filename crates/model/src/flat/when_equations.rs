@@ -1,4 +1,8 @@
 //! `when` equations: what becomes of variables at events (MLS 8.3.5).
+//!
+//! Enters: the branches of a `when` with their equations. Leaves: a `WhenClause` in which each branch lists its
+//! actions, with loops unrolled and `if`s turned into guards. `EquationFlattener::equation` calls
+//! [`EquationFlattener::when_equation`]; `structure` translates the clauses into discrete equations.
 
 use super::equations::{EquationFlattener, EquationSides, message};
 use super::{Variability, WhenAction, WhenBranch, WhenClause};
@@ -9,6 +13,7 @@ use bramah_syntax::ast::{self, EquationKind, Expr, ExprKind};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 
 impl<'a> EquationFlattener<'_, 'a, '_> {
+    /// Reads a `when` equation and appends its clause. All branches must determine the same variables.
     pub(super) fn when_equation(
         &mut self,
         branches: &'a [(Expr, Vec<ast::Equation>)],
@@ -21,12 +26,16 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
             let Some(conditions) = self.instance.statements().when_conditions(condition, view) else { continue };
             self.watch(view);
             let mut actions = Vec::new();
+            // The body is evaluated at the event, so relations in it make no events of their own.
+            // The body is evaluated at the event, so relations in it make no events of their own.
             let was = self.instance.statements().set_no_event(true);
             for e in body {
                 self.when_body(e, view, Exprs::ONE, &mut actions);
             }
             self.instance.statements().set_no_event(was);
             when.branches.push(WhenBranch { conditions, actions });
+            // The list starts empty for each branch.
+            // The list starts empty for each branch.
             let here = std::mem::take(&mut self.determined);
             match &first {
                 Some(first) => self.same_variables(first, &here, "when", condition.span),
@@ -36,7 +45,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         self.flat.whens.push(when);
     }
 
-    /// The branches of a `when`, and of an `if` in it, must determine the same variables (MLS 8.3.5.2).
+    /// Reports two lists of variables that differ: the branches of a `when`, and of an `if` in it, must determine the
+    /// same variables (MLS 8.3.5.2). `of` is `when` or `if`.
     pub(super) fn same_variables(&mut self, a: &[VarId], b: &[VarId], of: &str, span: Span) {
         let alone = |a: &[VarId], b: &[VarId]| a.iter().find(|v| !b.contains(v)).copied();
         let (where_, variable) = match (alone(a, b), alone(b, a)) {
@@ -54,6 +64,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         self.instance.diagnostics.push(d);
     }
 
+    /// Reports a `when` inside an `if` equation whose condition changes during the run.
     pub(super) fn when_under_if(&mut self, span: Span) {
         let message = "a `when` cannot stand inside an `if` whose condition changes during the run";
         self.instance.diagnostics.push(
@@ -63,6 +74,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         );
     }
 
+    /// Reads one equation in a `when` and appends its actions to `out`. `guard` is the condition of the `if`s around it
+    /// inside the `when`.
     pub(super) fn when_body(
         &mut self,
         e: &'a ast::Equation,
@@ -74,6 +87,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
             EquationKind::Equal(l, r) => {
                 let mut pairs = Vec::new();
                 self.equal(l, r, view, e.span, &mut pairs);
+                // Assertions of functions that the equation calls become actions: they are checked at the event only.
+                // Assertions of functions that the equation calls become actions: they are checked at the event only.
                 for mut call in self.instance.statements().take_calls() {
                     call.guard = self.instance.exprs.and(guard, call.guard);
                     self.algorithm_action(call, view, out);
@@ -98,6 +113,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         }
     }
 
+    /// Unrolls a `for` equation inside a `when`.
     pub(super) fn when_for(
         &mut self,
         iterators: &'a [ast::ForIndex],
@@ -120,6 +136,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         }
     }
 
+    /// Reads an `if` equation inside a `when`: both branches are read, each with its condition as an additional guard.
     pub(super) fn when_if(
         &mut self,
         branches: &'a [(Expr, Vec<ast::Equation>)],
@@ -142,7 +159,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         let yes = pool.and(guard, test);
         let no = pool.not(test);
         let no = pool.and(guard, no);
-        // known before the run: which branch remains is for the parameter to say, so only what all determine counts
+        // A condition known before the run selects one branch for the whole run, so the branches may determine
+        // different variables.
         let chosen = self.instance.variability(test) <= Variability::Parameter;
         let before = std::mem::take(&mut self.determined);
         for e in body {
@@ -154,12 +172,14 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         if !chosen {
             self.same_variables(&first, &second, "if", condition.span);
         }
+        // What both branches determine is determined once by the whole `if`.
+        // What both branches determine is determined once by the whole `if`.
         for &v in first.iter().filter(|v| second.contains(v)) {
             self.determine(v, condition.span);
         }
     }
 
-    /// Notes what a branch of a `when` determines; false, with a message, if it already does.
+    /// Records that the branch determines a variable. False, with a message, if it does so already.
     pub(super) fn determine(&mut self, variable: VarId, span: Span) -> bool {
         let again = self.determined.contains(&variable);
         if again {
@@ -170,13 +190,15 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         !again
     }
 
+    /// Reports that a variable gets a value twice. `how` completes the sentence that begins with its name.
     pub(super) fn twice(&mut self, variable: VarId, how: &str, span: Span) {
         let name = &self.flat.variables[variable.index()].name;
         let d = Diagnostic::new(Code::Overdetermined, format!("`{name}` {how}"));
         self.instance.diagnostics.push(d.at(span, "here again").help("remove one of the two"));
     }
 
-    /// An assignment; under a guard the variable keeps what it would otherwise get.
+    /// Appends an assignment. Under a guard that does not hold, the variable keeps what it would get otherwise: the
+    /// value of an earlier assignment in the other branch of an `if`, or its `pre` value.
     pub(super) fn when_assign(
         &mut self,
         p: EquationSides,
@@ -215,6 +237,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         }
     }
 
+    /// Reads `reinit`, `assert`, `terminate` or a function without outputs in a `when`.
     pub(super) fn when_call(
         &mut self,
         call: &'a Expr,
@@ -243,7 +266,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
                         self.bad_call(span, "`reinit` needs a variable as its first argument");
                         return;
                     };
-                    // under conditions of their own they may exclude each other
+                    // Two `reinit`s under different conditions may exclude each other; only certain conflicts are
+                    // reported.
                     let meets = |earlier: ExprId| earlier == guard || earlier == Exprs::ONE || guard == Exprs::ONE;
                     let again = |a: &WhenAction| match a {
                         WhenAction::Reinit { variable: v, guard, .. } => *v == variable && meets(*guard),
@@ -266,7 +290,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
                 let text = args.first().and_then(|m| self.instance.evaluator().eval(m, view));
                 out.push(WhenAction::Terminate { message: message(text), guard, origin });
             }
-            // a function without outputs says what must hold, or does what no model can see
+            // A function without outputs may assert something; other effects are invisible to a model.
             _ => match self.instance.evaluator().eval_all(call, view) {
                 Some(ModelicaValue::Tuple(values)) if values.is_empty() => {}
                 None => {}

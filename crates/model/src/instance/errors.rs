@@ -1,4 +1,6 @@
-//! Messages of this stage.
+//! Messages that several parts of the instance report, and helpers to word them.
+//!
+//! Suggestions come from [`nearest`], which finds the most similar of the known names.
 
 use super::lookup::BuiltinType;
 use super::{Instance, LookupContext, ScopeId};
@@ -9,7 +11,7 @@ use bramah_syntax::symbol::Symbol;
 
 pub use bramah_syntax::diag::nearest;
 
-/// A name cut to a length that fits in a message.
+/// A name for a message, cut after 60 characters if it has more than 80.
 pub fn short(name: &str) -> String {
     if name.chars().count() <= 80 {
         return name.to_string();
@@ -19,10 +21,11 @@ pub fn short(name: &str) -> String {
 }
 
 impl<'a> Instance<'a, '_> {
-    /// Errors since a mark that stand in other files than the model, as in a library, get the component of the model that
-    /// they come from.
+    /// Adds the component of the model to errors reported since `mark` that lie in other files, as in a library.
+    /// `mark` is the number of messages before the component was built, and `span` its declaration.
     pub fn point_at(&mut self, mark: usize, component: &str, span: Span) {
         for d in self.diagnostics[mark..].iter_mut().filter(|d| d.is_error() && !d.labels.is_empty()) {
+            // Messages at the component itself need no second label.
             if d.labels.iter().all(|l| l.span.file != span.file) {
                 d.labels.push(Label { span, text: format!("in the component `{component}` of your model") });
                 d.instance.get_or_insert_with(|| component.to_owned());
@@ -30,7 +33,8 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
-    /// The component of the model itself that an instance is or belongs to.
+    /// The component at the top level of the model that an instance is or belongs to.
+    /// `None` for the model itself, packages and functions.
     pub fn outermost(&self, mut scope: ScopeId) -> Option<ScopeId> {
         while let Some(owner) = self.scope(scope).owner {
             if owner == self.root {
@@ -41,6 +45,7 @@ impl<'a> Instance<'a, '_> {
         None
     }
 
+    /// Reports valid Modelica that is not supported. `what` begins the sentence: "a `delay` whose time changes".
     pub(super) fn unsupported(&mut self, span: Span, what: &str) {
         self.report(
             Diagnostic::new(Code::Unsupported, format!("{what} is not supported"))
@@ -48,7 +53,8 @@ impl<'a> Instance<'a, '_> {
         );
     }
 
-    /// A built-in function left out, with what to write instead.
+    /// Reports a built-in function that is not supported, with advice what to write instead.
+    /// `spatialDistribution` and the clocked operators get different advice.
     pub(super) fn unsupported_function(&mut self, span: Span, name: &str) {
         let advice = match name {
             "spatialDistribution" => "cut the line into a chain of volumes and resistances",
@@ -61,6 +67,7 @@ impl<'a> Instance<'a, '_> {
         );
     }
 
+    /// Reports a path that names something else where a class is needed. `class` is where it is used.
     pub(super) fn unknown_class(&mut self, path: &ast::Path, class: ClassId) {
         let inside = self.library.full_name(class);
         self.report(
@@ -70,7 +77,10 @@ impl<'a> Instance<'a, '_> {
         );
     }
 
+    /// Reports a base class that is not found. `class` extends it, and `parent` is the place around `class`.
+    /// If an import of the first part leads nowhere, that is reported instead.
     pub(super) fn unknown_base(&mut self, path: &ast::Path, class: ClassId, parent: LookupContext) {
+        // Looked up again, to find which part of the path is unknown.
         let part = self.names().lookup_path(parent, path).err().unwrap_or(0);
         if part == 0 && self.broken_import(parent, path.parts[0].name).is_some() {
             self.unknown_class_at(parent, path, part);
@@ -81,6 +91,10 @@ impl<'a> Instance<'a, '_> {
         self.unknown_class_message(path, part, &names);
     }
 
+    /// Reports a class that is not found, with the most similar name. `part` is the index of the unknown part.
+    ///
+    /// If the first part should have come from an import with a wrong path, the import is reported instead.
+    /// The names to choose from are those visible at `view`, or those in the package before the unknown part.
     pub(super) fn unknown_class_at(&mut self, view: LookupContext, path: &ast::Path, part: usize) {
         if let Some(import) = self.broken_import(view, path.parts[0].name).filter(|_| part == 0) {
             let part = self.names().lookup_path(super::ROOT, &import).err().unwrap_or(0);
@@ -92,6 +106,7 @@ impl<'a> Instance<'a, '_> {
         } else {
             let shorter = ast::Path { global: path.global, parts: path.parts[..part].to_vec(), span: path.span };
             match self.names().lookup_path(view, &shorter) {
+                // Only a package has members to suggest.
                 Ok(super::lookup::LookupResult::Class(c)) => {
                     let nested = nested_classes(self.library.class(c.class)).map(|n| n.name.name);
                     nested.chain(self.library.folder_members(c.class)).collect()
@@ -102,7 +117,9 @@ impl<'a> Instance<'a, '_> {
         self.unknown_class_message(path, part, &names);
     }
 
-    /// The import that should have brought a name, where its own path leads nowhere.
+    /// The path of the import that declares `name` around `view`, for a name that was not found.
+    /// `None` if no import declares it. Only imports of single names count.
+    /// The search goes outwards from `view`, as the lookup of the name did.
     fn broken_import(&mut self, mut view: LookupContext, name: Symbol) -> Option<ast::Path> {
         while view.scope != super::ROOT.scope {
             let template = self.scope(view.scope).template.clone();
@@ -119,6 +136,10 @@ impl<'a> Instance<'a, '_> {
         None
     }
 
+    /// Reports an unknown class. `names` are the classes known at that place.
+    ///
+    /// A name that begins with `Modelica` gets a hint that most of that library is not built in.
+    /// `part` is the index of the unknown name in the path.
     fn unknown_class_message(&mut self, path: &ast::Path, part: usize, names: &[Symbol]) {
         let name = path.parts[part].name.as_str();
         let whole = short(&path.dotted());
@@ -139,7 +160,8 @@ impl<'a> Instance<'a, '_> {
         self.report(d);
     }
 
-    /// Names of classes visible from a class, for suggestions.
+    /// The classes that are visible from a class, for suggestions: in it, in what encloses it, and at the top level.
+    /// The predefined types are among them.
     fn class_names_around(&mut self, class: ClassId) -> Vec<Symbol> {
         let mut names = Vec::new();
         let mut at = Some(class);
@@ -155,6 +177,7 @@ impl<'a> Instance<'a, '_> {
         names
     }
 
+    /// The classes that are visible from a place, for suggestions. Inherited ones are left out.
     fn class_names_at(&mut self, view: LookupContext) -> Vec<Symbol> {
         let template = self.scope(view.scope).template.clone();
         match template.bases.get(view.base as usize) {
@@ -163,6 +186,8 @@ impl<'a> Instance<'a, '_> {
         }
     }
 
+    /// Reports a modifier of an element that the class does not have. `known` are the names of its elements.
+    /// `class` is the name of the class for the message.
     pub(super) fn unknown_modifier(&mut self, name: ast::Ident, class: &str, known: &[Symbol]) {
         let mut d = Diagnostic::new(
             Code::UnknownModifier,
@@ -177,7 +202,7 @@ impl<'a> Instance<'a, '_> {
         self.report(d);
     }
 
-    /// `break connect(a, b)` of a connection that the class has not.
+    /// Reports `break connect(a, b)` of a connection that the class does not have (MLS 7.4).
     pub(super) fn unknown_connection(&mut self, a: &ast::Expr, b: &ast::Expr, class: &str) {
         self.report(
             Diagnostic::new(Code::UnknownModifier, format!("`{class}` has no `connect({a}, {b})` to leave out"))
@@ -187,6 +212,8 @@ impl<'a> Instance<'a, '_> {
         );
     }
 
+    /// Reports a modifier of an attribute that the predefined type does not have.
+    /// The message lists the attributes that the type has, or the most similar one.
     pub(super) fn unknown_attribute(&mut self, name: Symbol, span: Span, builtin: BuiltinType) {
         let known = super::components::attributes_of(builtin);
         let ty = builtin_name(builtin);
@@ -201,13 +228,15 @@ impl<'a> Instance<'a, '_> {
         self.report(d);
     }
 
+    /// Reports an error without a label, and returns `None` for the caller to pass on.
     pub(in crate::instance) fn fail<T>(&mut self, code: Code, message: &str, span: Span) -> Option<T> {
         self.report(Diagnostic::new(code, message).at(span, ""));
         None
     }
 }
 
-/// The Modelica name of a built-in type.
+/// The name of a predefined type in Modelica.
+/// Enumerations have no common name; their kind is given.
 pub fn builtin_name(b: BuiltinType) -> &'static str {
     match b {
         BuiltinType::Real => "Real",
@@ -219,7 +248,7 @@ pub fn builtin_name(b: BuiltinType) -> &'static str {
     }
 }
 
-/// "it has `a`, `b`, `c` and 4 more".
+/// A list of names for a message: "it has `a`, `b`, `c` and 4 more". At most ten are shown.
 pub fn list_names(intro: &str, names: &[Symbol]) -> String {
     let shown: Vec<String> = names.iter().take(10).map(|n| format!("`{n}`")).collect();
     match names.len() {

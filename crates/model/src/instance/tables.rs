@@ -1,4 +1,7 @@
-//! What an [`Instance`](crate::instance::Instance) keeps so that nothing is worked out twice: one table for each task.
+//! Results that an [`Instance`](crate::instance::Instance) keeps, so that nothing is computed twice.
+//!
+//! There is one table for each task. The views of [`crate::instance::views`] fill and read them; nothing else sees
+//! them.
 
 use crate::instance::building::given::GivenElement;
 #[cfg(feature = "fmi")]
@@ -20,72 +23,74 @@ use std::rc::Rc;
 #[cfg(feature = "fmi")]
 use std::sync::Arc;
 
-/// Classes that were looked up, by class and by the place from which they are seen.
+/// Classes that were looked up. Keys hold the class and its surroundings, because the same text may inherit from
+/// different classes at different places.
 #[derive(Default)]
 pub(in crate::instance) struct ClassTable<'a> {
-    /// What a class holds.
+    /// The template of each class: its elements and bases.
     pub templates: FxHashMap<(ClassId, LookupContext), Rc<Template<'a>>>,
-    /// The scopes of packages.
+    /// The scopes of packages without modifiers.
     pub packages: FxHashMap<(ClassId, LookupContext), ScopeId>,
-    /// The scopes of packages that modifiers change; few, so they are compared one by one.
+    /// The scopes of packages with modifiers. There are few of them, so a linear search is enough.
     pub modified_packages: Vec<(ClassRef<'a>, ScopeId)>,
-    /// Classes as they are written, without what they inherit: their bases are looked up there.
+    /// Scopes that hold only what is written in a class itself. The bases of the class are looked up in these.
     pub uninherited: FxHashMap<(ClassId, LookupContext), ScopeId>,
-    /// Classes whose bases are being looked up, innermost last. A class that is met again needs itself.
+    /// Classes whose bases are being looked up, innermost last. Meeting one of them again means that it needs itself.
     pub gathering: Vec<(ClassId, LookupContext)>,
-    /// Bases gathered since the outermost entry of `gathering`.
+    /// Number of bases gathered since `gathering` was last empty.
     pub gathered: usize,
-    /// More bases were gathered than any library has: from here on the search gives up early.
+    /// The limit on bases was passed and reported. From then on a lower limit holds, so that the compiler ends soon.
     pub tangled: bool,
-    /// Redeclared classes whose constraints are being looked up, innermost last.
+    /// Redeclared classes whose constraining classes are being looked up, innermost last.
     pub constrained: Vec<ClassId>,
-    /// Functions that passed the check of what functions may do.
+    /// Functions whose declarations were checked against MLS 12.2.
     pub checked_functions: FxHashSet<ClassId>,
-    /// Classes that passed the check of what their kind may hold.
+    /// Classes that were checked for what their kind may hold.
     pub checked_classes: FxHashSet<ClassId>,
-    /// Classes of operator records, by the numbers that their values carry.
+    /// Classes of operator records. A record value carries an index into this list.
     pub operator_records: Vec<ClassRef<'a>>,
-    /// Enumeration types: index into `Instance::enumerations`.
+    /// Enumeration types by class: index into `Instance::enumerations`.
     pub enumerations: FxHashMap<ClassId, u32>,
 }
 
-/// Functions that were called.
+/// Functions that were called, and what was made of them.
 #[derive(Default)]
 pub(in crate::instance) struct FunctionTable<'a> {
-    /// Procedures with the shapes of their outputs, by function and by what is built into them.
+    /// Procedures with the shapes of their outputs. The key names the function and the values that are built into it.
     pub procedures: FxHashMap<String, (FunctionId, Vec<ModelicaValue>)>,
-    /// External functions that stay calls, by what they are.
+    /// External functions that are called during the run. The key names the function and its fixed arguments.
     pub externals: FxHashMap<String, FunctionId>,
-    /// Compiled C functions, by the text of their wrappers.
+    /// Compiled C functions. The key is the source text of the wrapper.
     #[cfg(feature = "fmi")]
     pub compiled_c: FxHashMap<String, Arc<dyn ExternalFunction>>,
-    /// Functions that were given as arguments, by the numbers that their values carry.
+    /// Functions passed as arguments. A function value carries an index into this list.
     pub arguments: Vec<ClassRef<'a>>,
-    /// Tables read from files, by file and name.
+    /// Tables read from files, by file and table name.
     pub tables: FxHashMap<(FileId, String), Rc<TableMatrix>>,
-    /// Units of other tools, by file and kind.
+    /// FMUs that stand in for components, by file and kind.
     #[cfg(feature = "fmi")]
     pub units: FxHashMap<(String, String), FmuClass>,
 }
 
-/// What is known of values and expressions.
+/// Values and properties of expressions.
 #[derive(Default)]
 pub(in crate::instance) struct ValueTable {
-    /// Values of arrays that are written as one expression; true for those that count by the values of parameters.
+    /// Values of binding equations that are distributed over the elements of an array or the fields of a record.
+    /// The flag of the key is true for values computed with parameters by value.
     pub arrays: FxHashMap<(*const ast::Expr, LookupContext, bool), ModelicaValue>,
-    /// Parameters, with whether their value is only found at the start of a run.
+    /// Parameters, with whether they get their value at initialization only.
     pub found_at_start: FxHashMap<VarId, bool>,
-    /// When each expression may change, by its number.
+    /// The variability of each expression, by its number.
     pub variabilities: Vec<Variability>,
 }
 
 /// What concerns components while they are being built.
 #[derive(Default)]
 pub(in crate::instance) struct BuildingTable<'a> {
-    /// `inner` components by scope and name.
+    /// `inner` components that were added for `outer` ones, by the scope of the model and their name.
     pub inner: FxHashMap<(ScopeId, Symbol), NodeId>,
-    /// Whether an `inner` component fits an `outer` declaration.
+    /// Whether the type of an `inner` component fits an `outer` declaration.
     pub outer_fits: FxHashMap<(NodeId, *const ast::ComponentDeclaration), bool>,
-    /// Values given from outside for single elements of arrays.
+    /// Values given from outside for single elements of arrays: `a[2].p = 3`.
     pub given_elements: Vec<GivenElement<'a>>,
 }

@@ -1,6 +1,9 @@
-//! The library of classes: reads files as names are asked for, and finds classes by their static names.
+//! The library of classes: finds classes by their full names and reads files on demand.
 //!
-//! Names that depend on an instance (inherited elements, redeclared classes) are the business of `instance`.
+//! A [`Library`] knows the folders of packages. A class is read and entered when somebody asks for its name.
+//! Every class gets a [`ClassId`], which the rest of the compiler uses.
+//! Only the text counts here: inherited elements and redeclarations depend on an instance, see `instance`.
+//! [`names`] adds inheritance as far as the text alone determines it.
 
 pub mod names;
 
@@ -13,54 +16,68 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use typed_arena::Arena;
 
-/// Owner of all syntax trees of one compilation.
+/// The owner of all syntax trees of a compilation. Classes borrow from it.
 pub type SyntaxArena = Arena<ast::StoredDefinition>;
 
-/// A class in a [`Library`].
+/// The number of a class in a [`Library`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ClassId(pub u32);
 
-/// A folder that holds top-level packages, or the members of a package.
+/// A folder that holds top-level packages, or the classes of a package.
 #[derive(Clone)]
 struct PackageFolder<'a> {
+    /// Access to files.
     world: &'a dyn World,
+    /// The path of the folder.
     path: PathBuf,
 }
 
+/// A class of the library.
 struct ClassEntry<'a> {
+    /// The class that encloses it in the text. `None` for top-level classes.
     parent: Option<ClassId>,
+    /// Its syntax tree.
     ast: &'a ast::Class,
+    /// The folder of a package that is stored as one; further classes are searched there.
     folder: Option<PackageFolder<'a>>,
+    /// Classes in it that were asked for, with `None` for names that do not exist.
     children: FxHashMap<Symbol, Option<ClassId>>,
-    /// Direct bases by the text, once they have been asked for ([`names`]).
+    /// Its direct bases by the text alone. `None` until [`names`] has looked for them.
     bases: Option<Rc<[ClassId]>>,
 }
 
-/// In place of a file: only what the annotations of functions name.
+/// An entry in the list of allowed C files that allows what the annotations of functions name.
 pub const ANNOTATIONS: &str = "annotations";
 
 /// All classes that can be named, loaded as far as they have been asked for.
 pub struct Library<'a> {
+    /// The syntax trees.
     trees: &'a SyntaxArena,
+    /// The classes, by their numbers.
     entries: Vec<ClassEntry<'a>>,
+    /// Top-level classes that were asked for, with `None` for names that do not exist.
     top: FxHashMap<Symbol, Option<ClassId>>,
-    /// Top-level classes of the user's own files, in order.
+    /// Top-level classes of the user's own files, in the order in which they were added.
     pub own: Vec<ClassId>,
+    /// Folders of top-level packages, in order of precedence.
     roots: Vec<PackageFolder<'a>>,
+    /// Numbers of the classes that are entered, by the addresses of their syntax trees.
     by_ast: FxHashMap<*const ast::Class, ClassId>,
-    /// Where files that models name are looked for.
+    /// The folder in which relative names of data files begin.
     data_folder: Option<PackageFolder<'a>>,
-    /// C sources and libraries that may be called.
+    /// C sources and libraries that may be called. Empty if C code is not allowed.
     externals: Vec<PathBuf>,
+    /// Data files that were read, by the names under which models ask for them.
     data: FxHashMap<String, FileId>,
-    /// All texts read so far.
+    /// The texts of all files read so far.
     pub sources: Sources,
-    /// What the parser and the search for files had to say.
+    /// Messages of the parser.
     pub diagnostics: Vec<Diagnostic>,
 }
 
 impl<'a> Library<'a> {
-    /// An empty library. `roots` are folders whose entries are top-level packages, in order of precedence.
+    /// An empty library. `roots` are folders with top-level packages, in order of precedence.
+    /// No file is read until a class is asked for.
     pub fn new(trees: &'a SyntaxArena, roots: Vec<(&'a dyn World, PathBuf)>) -> Self {
         Library {
             trees,
@@ -77,17 +94,17 @@ impl<'a> Library<'a> {
         }
     }
 
-    /// The syntax of a class.
+    /// The syntax tree of a class.
     pub fn class(&self, id: ClassId) -> &'a ast::Class {
         self.entries[id.0 as usize].ast
     }
 
-    /// The class that textually contains this one.
+    /// The class that encloses this one in the text. `None` for top-level classes.
     pub fn parent(&self, id: ClassId) -> Option<ClassId> {
         self.entries[id.0 as usize].parent
     }
 
-    /// The full dotted name.
+    /// The full dotted name, as `Modelica.Math.sin`.
     pub fn full_name(&self, id: ClassId) -> String {
         let name = self.class(id).name.name.as_str();
         match self.parent(id) {
@@ -96,16 +113,19 @@ impl<'a> Library<'a> {
         }
     }
 
-    /// The id of a class given by its syntax node, if it was entered.
+    /// The number of the class with this syntax tree. `None` if it is not entered.
     pub fn id_of(&self, class: &ast::Class) -> Option<ClassId> {
         self.by_ast.get(&std::ptr::from_ref(class)).copied()
     }
 
-    /// Enters a class that stands inside another one (a nested or redeclared class).
+    /// Enters a class inside of `parent`, such as a nested class or a redeclaration. Entering it again gives the same
+    /// number.
     pub fn enter(&mut self, ast: &'a ast::Class, parent: Option<ClassId>) -> ClassId {
         self.enter_with(ast, parent, None)
     }
 
+    /// Like [`Self::enter`], with the folder of a package.
+    /// Syntax trees are never moved, so their address identifies a class.
     fn enter_with(
         &mut self,
         ast: &'a ast::Class,
@@ -121,7 +141,8 @@ impl<'a> Library<'a> {
         id
     }
 
-    /// Parses a text and enters its classes at the top; returns them.
+    /// Parses a text and enters its classes at the top level, in order. They count as the user's own.
+    /// Errors go to `diagnostics`.
     pub fn add_text(&mut self, path: &str, text: &str) -> Vec<ClassId> {
         let tree = self.parse(path, text);
         let mut ids = Vec::new();
@@ -134,13 +155,15 @@ impl<'a> Library<'a> {
         ids
     }
 
-    /// Loads the user's file or package folder and returns the classes it names.
+    /// Loads the user's file or package folder and returns the classes that it names.
     ///
-    /// A file that belongs to a package (there is a `package.mo` beside it) brings the whole package with it.
+    /// A file of a package, with a `package.mo` beside it, brings the complete package with it.
+    /// Its class is then the result.
     ///
     /// # Errors
-    /// A diagnostic when the file cannot be read.
+    /// A diagnostic, if the file cannot be read or has no class of its name.
     pub fn add_path(&mut self, world: &'a dyn World, path: &Path) -> Result<Vec<ClassId>, Box<Diagnostic>> {
+        // A path that can be listed is a folder.
         if world.list(path).is_some() {
             return self.add_package(world, path).map(|id| vec![id]);
         }
@@ -153,16 +176,20 @@ impl<'a> Library<'a> {
         }
     }
 
+    /// Loads a file that belongs to no package, and returns its classes.
     fn add_file(&mut self, world: &'a dyn World, path: &Path) -> Result<Vec<ClassId>, Box<Diagnostic>> {
         let text = world.read(path).map_err(|why| Box::new(unreadable(path, &why)))?;
-        // Packages beside the file can be named without further ado.
+        // Packages beside the file can be named in it.
         if let Some(parent) = path.parent() {
             self.roots.insert(0, PackageFolder { world, path: parent.to_path_buf() });
         }
         Ok(self.add_text(&path.display().to_string(), &text))
     }
 
-    /// A file inside a package folder: the outermost package becomes top-level, the file's class is found inside.
+    /// Loads a file inside of a package folder. The outermost package becomes a top-level class of the user.
+    /// The result is the class of the file, which is looked up inside.
+    ///
+    /// `package` is the folder of the file. Enclosing folders with a `package.mo` belong to the package too.
     fn add_member(
         &mut self,
         world: &'a dyn World,
@@ -184,6 +211,8 @@ impl<'a> Library<'a> {
         Ok(vec![id])
     }
 
+    /// Loads the `package.mo` of a folder as a top-level package of the user. Its other classes are read on demand.
+    /// The folder around it becomes the first place to search for other top-level packages.
     fn add_package(&mut self, world: &'a dyn World, folder: &Path) -> Result<ClassId, Box<Diagnostic>> {
         if let Some(parent) = folder.parent() {
             self.roots.insert(0, PackageFolder { world, path: parent.to_path_buf() });
@@ -200,24 +229,27 @@ impl<'a> Library<'a> {
         Ok(id)
     }
 
+    /// Parses a text and keeps its tree. Messages of the parser go to `diagnostics`.
     fn parse(&mut self, path: &str, text: &str) -> &'a ast::StoredDefinition {
         let file: FileId = self.sources.add(path, text);
         let parsed = bramah_syntax::parse(file, text);
         self.diagnostics.extend(parsed.diagnostics);
+        // The arena keeps the tree at its address, which identifies classes.
         self.trees.alloc(parsed.tree)
     }
 
-    /// A top-level class that has been asked for before.
+    /// A top-level class that was asked for before. Reads no files. `None` if it was not, or does not exist.
     pub fn loaded(&self, name: Symbol) -> Option<ClassId> {
         *self.top.get(&name)?
     }
 
-    /// A top-level class by name: the user's, then those of the roots in order.
+    /// A top-level class by its name. The user's own classes come first, then the folders in order.
+    /// `None` if there is none.
     pub fn top(&mut self, name: Symbol) -> Option<ClassId> {
         if let Some(found) = self.top.get(&name) {
             return *found;
         }
-        // Entered first, so that a cyclic search ends.
+        // Entered first, so that a search that comes back to the same name ends.
         self.top.insert(name, None);
         let found = (0..self.roots.len()).find_map(|i| {
             let folder = self.roots[i].clone();
@@ -227,7 +259,8 @@ impl<'a> Library<'a> {
         found
     }
 
-    /// A class declared textually inside another one (not inherited), or stored in its folder.
+    /// A class that is written inside of another one, or stored in its folder. Inherited classes do not count.
+    /// `None` if there is none; the answer is remembered.
     pub fn child(&mut self, class: ClassId, name: Symbol) -> Option<ClassId> {
         if let Some(found) = self.entries[class.0 as usize].children.get(&name) {
             return *found;
@@ -237,6 +270,7 @@ impl<'a> Library<'a> {
         found
     }
 
+    /// Like [`Self::child`], without the table of earlier answers.
     fn find_child(&mut self, class: ClassId, name: Symbol) -> Option<ClassId> {
         let ast = self.class(class);
         if let Some(nested) = nested_classes(ast).find(|c| c.name.name == name) {
@@ -246,16 +280,18 @@ impl<'a> Library<'a> {
         self.load_from(&folder, name, Some(class))
     }
 
-    /// Names of the classes stored in the folder of a package, sorted; empty for other classes.
+    /// The names of the classes in the folder of a package, sorted. Empty for classes without a folder.
     pub fn folder_members(&self, class: ClassId) -> Vec<Symbol> {
         self.entries[class.0 as usize].folder.as_ref().map_or_else(Vec::new, Self::names_in)
     }
 
-    /// Names of the packages and models at the top of all folders.
+    /// The names of the top-level packages and models in all folders.
     pub fn top_level(&self) -> Vec<Symbol> {
         self.roots.iter().flat_map(Self::names_in).collect()
     }
 
+    /// The names of the packages and model files in a folder.
+    /// Only names are read, no files. `package.mo` itself is left out.
     fn names_in(folder: &PackageFolder<'a>) -> Vec<Symbol> {
         let mut names = Vec::new();
         for (name, is_folder) in folder.world.list(&folder.path).unwrap_or_default() {
@@ -268,7 +304,12 @@ impl<'a> Library<'a> {
         names
     }
 
+    /// Reads a class from a folder: `Name/package.mo` or `Name.mo`. `None` if neither exists or holds the class.
+    ///
+    /// `parent` is the package, `None` at the top level. A class in a folder can hold further classes in files.
+    /// The class in a file must have the name of the file, otherwise it is not found.
     fn load_from(&mut self, folder: &PackageFolder<'a>, name: Symbol, parent: Option<ClassId>) -> Option<ClassId> {
+        // The name is part of a path, so everything that leads to another folder is refused.
         let word = name.as_str().trim_matches('\'');
         if word.is_empty() || word.contains(['/', '\\', '\0']) || word.len() > 200 {
             return None;
@@ -276,6 +317,7 @@ impl<'a> Library<'a> {
         let world = folder.world;
         let inner = folder.path.join(word);
         let file = inner.join("package.mo");
+        // A folder with a `package.mo` is preferred to a file of the same name.
         if let Ok(text) = world.read(&file) {
             let tree = self.parse(&file.display().to_string(), &text);
             let class = tree.classes.first().filter(|c| c.name.name == name)?;
@@ -288,25 +330,27 @@ impl<'a> Library<'a> {
         Some(self.enter(class, parent))
     }
 
-    /// Says where relative names of data files begin.
+    /// Sets the folder in which relative names of data files begin.
     pub fn set_data_folder(&mut self, world: &'a dyn World, path: PathBuf) {
         self.data_folder = Some(PackageFolder { world, path });
     }
 
-    /// Allows calls of C code: of these sources and libraries, and of what annotations name.
+    /// Allows calls of C code in these sources and libraries. [`ANNOTATIONS`] in the list allows what annotations name.
     pub fn set_externals(&mut self, files: Vec<PathBuf>) {
         self.externals = files;
     }
 
-    /// Whether C code may be called.
+    /// Whether C code may be called at all.
     pub fn calls_c(&self) -> bool {
         !self.externals.is_empty()
     }
 
-    /// The library that the C compiler makes of a text with the code that may be called.
+    /// Compiles a C text together with the code that may be called, to a shared library.
+    ///
+    /// `utilities` are C functions for external code, `arguments` those of the compiler that annotations ask for.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason, as the message of the compiler.
     #[cfg(feature = "fmi")]
     pub fn compile_c(
         &self,
@@ -320,18 +364,20 @@ impl<'a> Library<'a> {
         folder.world.compile_c(text, utilities, &arguments)
     }
 
-    /// The path of what `modelica://Package/...` names, where that package has a folder.
+    /// The path that `modelica://Package/...` names. `None` if the package does not exist or has no folder.
     pub fn resource(&mut self, address: &str) -> Option<PathBuf> {
         let (package, rest) = address.strip_prefix("modelica://")?.split_once('/')?;
         let id = self.find(package)?;
         Some(self.entries[id.0 as usize].folder.clone()?.path.join(rest))
     }
 
-    /// A data file that a model names: `modelica://Package/...` below the folder of a package, an absolute path, or one
-    /// that begins at the data folder or where the command runs.
+    /// A data file that a model names. It is read once.
+    ///
+    /// `modelica://Package/...` begins at the folder of a package. Other names are absolute, or begin at the data
+    /// folder, or else at the folder in which the command runs.
     ///
     /// # Errors
-    /// Why it cannot be read.
+    /// The reason why it cannot be read.
     pub fn data(&mut self, name: &str) -> Result<FileId, String> {
         if let Some(&file) = self.data.get(name) {
             return Ok(file);
@@ -342,20 +388,25 @@ impl<'a> Library<'a> {
         Ok(file)
     }
 
-    /// The bytes of a file that a model names, as [`Library::data`].
+    /// The bytes of a file that a model names, found like that of [`Library::data`].
     ///
     /// # Errors
-    /// Why it cannot be read.
+    /// The reason why it cannot be read.
     pub fn bytes(&mut self, name: &str) -> Result<Vec<u8>, String> {
         self.read_data(name, |world, path| world.bytes(path)).map(|(_, bytes)| bytes)
     }
 
-    /// Enters a class that was made of a file: the first of its text.
+    /// Parses a generated text and enters its first class. It cannot be found by its name.
+    /// `None` if the text has no class.
     pub fn generated(&mut self, path: &str, text: &str) -> Option<ClassId> {
         let class = self.parse(path, text).classes.first()?;
         Some(self.enter(class, None))
     }
 
+    /// Finds a file that a model names and reads it with `read`. The result has its path.
+    ///
+    /// Names with `modelica://` are looked up in the package only. Other names are tried below the data folder and then
+    /// as they are.
     fn read_data<T>(
         &mut self,
         name: &str,
@@ -372,11 +423,12 @@ impl<'a> Library<'a> {
         let Some(folder) = &self.data_folder else { return Err("there are no files here".to_owned()) };
         let (beside, path) = (folder.path.join(name), PathBuf::from(name));
         let found = read(folder.world, &beside).map(|text| (beside.clone(), text));
-        // The message speaks of the first place; a file that is there but unreadable must not be passed over in words.
+        // If both places fail, the reason at the first one is returned: a file that exists but is unreadable is more
+        // telling.
         found.or_else(|why| read(folder.world, &path).map(|text| (path, text)).map_err(|_| why))
     }
 
-    /// A class by its full dotted name.
+    /// A class by its full dotted name. `None` if there is none. Inherited classes are not found.
     pub fn find(&mut self, dotted: &str) -> Option<ClassId> {
         let mut parts = dotted.split('.').map(Symbol::new);
         let mut id = self.top(parts.next()?)?;
@@ -387,7 +439,8 @@ impl<'a> Library<'a> {
     }
 }
 
-/// Classes declared in the body of a class.
+/// The classes that are declared in the body of a class, in the order of the text.
+/// Short classes and enumerations have none. Classes in files of their own are not among them.
 pub fn nested_classes(class: &ast::Class) -> impl Iterator<Item = &ast::Class> {
     let elements = match &class.body {
         ClassBody::Long(body) => body.elements.as_slice(),
@@ -399,10 +452,12 @@ pub fn nested_classes(class: &ast::Class) -> impl Iterator<Item = &ast::Class> {
     })
 }
 
+/// Whether a folder holds a `package.mo`.
 fn has_package(world: &dyn World, folder: &Path) -> bool {
     world.list(folder).is_some_and(|entries| entries.iter().any(|(name, dir)| !dir && name == "package.mo"))
 }
 
+/// The message for a file that cannot be read.
 fn unreadable(path: &Path, why: &str) -> Diagnostic {
     Diagnostic::new(Code::FileAccess, format!("cannot read `{}`: {why}", path.display()))
 }

@@ -1,6 +1,7 @@
-//! What a name means by the text alone, with inheritance and imports: for pages, descriptions and editors.
+//! The meaning of names by the text alone, with inheritance and imports.
 //!
-//! Redeclared classes count as what they are declared as; what an instance makes of them is the business of `instance`.
+//! Pages, descriptions and editors use it, which look at classes without an instance.
+//! A redeclared class counts as it is declared. Modifiers are not applied; see `instance` for that.
 
 use super::{ClassId, Library, nested_classes};
 use bramah_syntax::ast::{
@@ -17,24 +18,24 @@ pub enum NameTarget<'a> {
     Class(ClassId),
     /// A component.
     Component(MemberComponent<'a>),
-    /// A literal of an enumeration.
+    /// A literal of an enumeration: the class and the literal.
     Literal(ClassId, &'a EnumLiteral),
     /// The variable of a `for` loop.
     Iterator(Ident),
 }
 
-/// A declared component with the class that declares it.
+/// A component with the class that declares it.
 #[derive(Clone, Copy, Debug)]
 pub struct MemberComponent<'a> {
-    /// Where it is declared: the class itself or a base.
+    /// The class that declares it: the class itself or one of its bases.
     pub owner: ClassId,
     /// Its declaration.
     pub component: &'a ComponentDeclaration,
-    /// Not meant for users.
+    /// Declared in a protected section.
     pub protected: bool,
 }
 
-/// The long body of a class, where it has one.
+/// The body of a class. `None` for short classes, enumerations and the like.
 pub fn body(class: &Class) -> Option<&LongBody> {
     match &class.body {
         ClassBody::Long(body) => Some(body),
@@ -42,12 +43,14 @@ pub fn body(class: &Class) -> Option<&LongBody> {
     }
 }
 
-/// Direct bases of a class.
+/// The direct bases of a class, in the order of the text. Bases that are not found are left out.
 pub fn bases(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
     known_bases(library, id).to_vec()
 }
 
-/// Direct bases of a class. While they are looked for it has none, so that classes that need each other come to an end.
+/// Like [`bases`], from the table if they were looked for before.
+/// While they are looked for, the class has none. That ends the search for classes that need each other.
+/// Short classes have one base, other classes one for each `extends` clause.
 fn known_bases(library: &mut Library<'_>, id: ClassId) -> Rc<[ClassId]> {
     if let Some(known) = &library.entries[id.0 as usize].bases {
         return known.clone();
@@ -59,12 +62,14 @@ fn known_bases(library: &mut Library<'_>, id: ClassId) -> Rc<[ClassId]> {
         ClassBody::Long(body) => body.elements.iter().filter_map(|e| base(&e.kind)).collect(),
         _ => Vec::new(),
     };
+    // Bases that are not found are left out; the instance reports them.
     let found: Rc<[ClassId]> = paths.into_iter().filter_map(|p| resolve_outside(library, id, p)).collect();
     library.entries[id.0 as usize].bases = Some(found.clone());
     found
 }
 
-/// A class and all it inherits, nearest first.
+/// A class and everything that it inherits from, nearest first, each once.
+/// The order is breadth first, so that direct bases come before their own bases.
 pub fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
     let mut found = vec![id];
     let mut next = 0;
@@ -79,7 +84,8 @@ pub fn lineage(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
     found
 }
 
-/// The components of a class, its own first, then inherited ones.
+/// The components of a class: its own first, then inherited ones.
+/// A component that is inherited twice appears twice.
 pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> Vec<MemberComponent<'a>> {
     let mut found = Vec::new();
     for owner in lineage(library, id) {
@@ -92,7 +98,7 @@ pub fn members<'a>(library: &mut Library<'a>, id: ClassId) -> Vec<MemberComponen
     found
 }
 
-/// Classes in a class, its own first, then inherited ones; of a package also those in its folder.
+/// The classes in a class: its own first, then inherited ones. For a package also those in its folder.
 pub fn classes(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
     let mut found = Vec::new();
     for owner in lineage(library, id) {
@@ -100,21 +106,23 @@ pub fn classes(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
         names.extend(library.folder_members(owner));
         found.extend(names.into_iter().filter_map(|name| library.child(owner, name)));
     }
+    // A class may be in the text and in the folder: such neighbours are one entry.
     found.dedup();
     found
 }
 
-/// The class that a path means inside a class.
+/// The class that a path means inside of a class. `None` if it means none.
 pub fn resolve(library: &mut Library<'_>, from: ClassId, path: &Path) -> Option<ClassId> {
     named(library, Some(from), &words(path), path.global)
 }
 
-/// The class of a component; `None` for the built-in types.
+/// The class of a component. `None` for predefined types.
 pub fn type_of(library: &mut Library<'_>, member: MemberComponent<'_>) -> Option<ClassId> {
     resolve(library, member.owner, &member.component.class)
 }
 
-/// What an attribute such as `unit` is given, by the component itself or by its type.
+/// The value that a component or its type gives to an attribute such as `unit`. `None` if neither does.
+/// Only modifiers written as `unit = ...` in the declaration or in short classes count.
 pub fn attribute<'a>(library: &mut Library<'a>, member: MemberComponent<'a>, name: &str) -> Option<&'a Expr> {
     if let Some(value) = given(member.component.modification.as_ref(), name) {
         return Some(value);
@@ -126,6 +134,8 @@ pub fn attribute<'a>(library: &mut Library<'a>, member: MemberComponent<'a>, nam
     })
 }
 
+/// The value that a modification gives to an attribute.
+/// Only a modifier whose path is the attribute itself counts.
 fn given<'a>(modification: Option<&'a Modification>, name: &str) -> Option<&'a Expr> {
     modification?.arguments.iter().find_map(|argument| match &argument.kind {
         ModificationArgumentKind::Modify { path, modification: Some(m), .. }
@@ -137,7 +147,9 @@ fn given<'a>(modification: Option<&'a Modification>, name: &str) -> Option<&'a E
     })
 }
 
-/// What a word means inside a class: its elements, what it inherits and imports, then the classes around it.
+/// What a word means inside of a class. `None` if it means nothing.
+///
+/// The order is that of MLS 5.3.1: elements and inherited elements, imports, then the same in the enclosing classes.
 pub fn lookup<'a>(library: &mut Library<'a>, from: ClassId, name: Symbol) -> Option<NameTarget<'a>> {
     let mut scope = Some(from);
     while let Some(id) = scope {
@@ -152,10 +164,13 @@ pub fn lookup<'a>(library: &mut Library<'a>, from: ClassId, name: Symbol) -> Opt
     library.top(name).map(NameTarget::Class)
 }
 
-/// What a word means as an element of a class, its own or an inherited one.
+/// What a word means as an element of a class, its own or an inherited one: literal, component or class.
+/// The class itself is searched first, then its bases, nearest first.
+/// `None` if no class in the line of inheritance has it.
 pub fn element<'a>(library: &mut Library<'a>, class: ClassId, name: Symbol) -> Option<NameTarget<'a>> {
     for owner in lineage(library, class) {
         let ast = library.class(owner);
+        // Literals are no elements of the syntax tree, so they are searched first.
         if let ClassBody::Enumeration(Some(literals)) = &ast.body
             && let Some(literal) = literals.iter().find(|l| l.name.name == name)
         {
@@ -177,7 +192,8 @@ pub fn element<'a>(library: &mut Library<'a>, class: ClassId, name: Symbol) -> O
     None
 }
 
-/// The class in which the elements of something are looked up: a class itself, or that of a component.
+/// The class in which elements of something are looked up: a class itself, or that of a component.
+/// `None` for literals, loop variables, and components of predefined types.
 pub fn inside(library: &mut Library<'_>, target: NameTarget<'_>) -> Option<ClassId> {
     match target {
         NameTarget::Class(id) => Some(id),
@@ -186,10 +202,12 @@ pub fn inside(library: &mut Library<'_>, target: NameTarget<'_>) -> Option<Class
     }
 }
 
+/// The parts of a path.
 fn words(path: &Path) -> Vec<Symbol> {
     path.parts.iter().map(|p| p.name).collect()
 }
 
+/// The path in an `extends` clause. `None` for other elements.
 fn base(kind: &ElementKind) -> Option<&Path> {
     match kind {
         ElementKind::Extends(x) => Some(&x.base),
@@ -197,10 +215,12 @@ fn base(kind: &ElementKind) -> Option<&Path> {
     }
 }
 
-/// As [`resolve`] for the bases of a class, which are looked up without what is inherited.
+/// Like [`resolve`], for the bases of a class: inherited names do not count (MLS 5.6.1).
+/// Classes written in the class itself are found, and so are its imports.
 fn resolve_outside(library: &mut Library<'_>, class: ClassId, path: &Path) -> Option<ClassId> {
     let parts = words(path);
     if !path.global {
+        // A class cannot be its own base: `model A extends A` means another `A` further out.
         let own = library.child(class, parts[0]).filter(|f| *f != class);
         if let Some(found) = own.or_else(|| imported(library, class, parts[0])) {
             return descend(library, found, &parts[1..]);
@@ -210,11 +230,13 @@ fn resolve_outside(library: &mut Library<'_>, class: ClassId, path: &Path) -> Op
     named(library, parent, &parts, path.global)
 }
 
-/// The class that dotted words mean inside a class; from the top without one.
+/// The class that dotted words mean inside of `from`, or at the top level without it.
+/// `global` is true for a path with a leading dot, which begins at the top level.
 pub fn named(library: &mut Library<'_>, from: Option<ClassId>, parts: &[Symbol], global: bool) -> Option<ClassId> {
     let (first, rest) = parts.split_first()?;
     let mut scope = from.filter(|_| !global);
     while let Some(id) = scope {
+        // What the class itself has comes before its imports (MLS 5.3.1).
         if let Some(found) = member(library, id, *first).or_else(|| imported(library, id, *first)) {
             return descend(library, found, rest);
         }
@@ -229,6 +251,9 @@ fn member(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassI
     lineage(library, id).into_iter().find_map(|class| library.child(class, name))
 }
 
+/// The class that a name means through the imports of a class. `None` if no import declares it or its path is wrong.
+/// Imported paths begin at the top level (MLS 13.2.1).
+/// An import of all names of a package is tried with the name itself.
 fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<ClassId> {
     let body = body(library.class(id))?;
     for element in &body.elements {
@@ -251,12 +276,12 @@ fn imported(library: &mut Library<'_>, id: ClassId, name: Symbol) -> Option<Clas
     None
 }
 
-/// The class that words mean from a class inwards; what a class imports is not seen from outside.
+/// Follows words from a class inwards. Imports of a class do not count from outside (MLS 13.2.1).
 fn descend(library: &mut Library<'_>, id: ClassId, parts: &[Symbol]) -> Option<ClassId> {
     parts.iter().try_fold(id, |id, part| member(library, id, *part))
 }
 
-/// Whether a class is a connector, or a short name for one.
+/// Whether a class is a connector, or extends one.
 pub fn is_connector(library: &mut Library<'_>, id: ClassId) -> bool {
     lineage(library, id).into_iter().any(|c| matches!(library.class(c).kind, ClassKind::Connector { .. }))
 }

@@ -1,8 +1,12 @@
 //! Alias elimination: variables that equal another one or its negative, and variables that are the derivative of
 //! another one.
 //!
-//! Union-find with signs; `w = der(phi)` links `phi` to `w`, and if `phi` equals `psi`, their derivatives are equal
-//! too. The links keep index reduction from inventing `der(phi)` beside `w`.
+//! Enters: the draft with its equations. Leaves: the draft rewritten in one representative of each alias set, with
+//! merged attributes, and the list of [`Alias`]es. `analysis` calls [`eliminate`] before anything is matched.
+//!
+//! The alias sets are a union-find structure with signs. An equation `w = der(phi)` links `phi` to `w`; if `phi` equals
+//! `psi`, their derivatives are equal too. The links keep index reduction from making a second variable `der(phi)`
+//! beside `w`.
 
 use super::draft::{DaeDraft, SignedVariable, SystemRole};
 use super::{Alias, EventActionKind, messages, parameters};
@@ -10,8 +14,8 @@ use crate::flat::{ElementOrigin, FlatEquation, OriginKind, ScalarType, StateSele
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use bramah_syntax::diag::Diagnostic;
 
-/// Removes alias equations and rewrites everything in terms of the variables that stay. Contradicting start values go
-/// to `diagnostics`.
+/// Removes alias equations and rewrites every expression in terms of the representatives. Contradicting start values go
+/// to `diagnostics`. The aliases come out in ascending order of the eliminated variable.
 pub(super) fn eliminate(
     draft: &mut DaeDraft,
     known: &mut parameters::SignAnalysis,
@@ -26,12 +30,14 @@ pub(super) fn eliminate(
             Some(AliasEquation::Equal(a, b)) if may_join(draft, a.variable, b) => {
                 kept[i] = !classes.join(draft, a.variable, b)
             }
+            // A free parameter is no unknown of the run and cannot be an alias of one; only its guess is shared.
             Some(AliasEquation::Equal(a, b)) if is_found(draft, a.variable) => found.push((a, b)),
             Some(AliasEquation::Equal(a, b)) if is_found(draft, b.variable) => found.push((b, a)),
             Some(AliasEquation::Derivative(w, of)) => links.push((i, w, of)),
             _ => {}
         }
     }
+    // After all joins: a link between two sets of aliases needs the final representatives on both sides.
     link_derivatives(draft, &mut classes, &links, &mut kept);
     retain(draft, &kept);
     let differentiated = links.iter().map(|(.., of)| of.variable);
@@ -47,14 +53,15 @@ pub(super) fn eliminate(
         share_guess(draft, parameter.variable, SignedVariable { variable: target.variable, negated });
     }
     rewrite(draft, &targets);
-    // A ring of aliases leaves one that says nothing: it determines no unknown.
+    // Redundant aliases (a ring of connections) become `0 = 0`. The equation stays, so that the regularity check
+    // reports that it determines no unknown.
     for equation in draft.equations.iter_mut().filter(|e| e.lhs == e.rhs) {
         (equation.lhs, equation.rhs) = (Exprs::ZERO, Exprs::ZERO);
     }
     aliases
 }
 
-/// An equation of one leaf or two.
+/// What an equation with one or two leaves says.
 pub(super) enum AliasEquation {
     /// The variable is 0.
     Zero(VarId),
@@ -64,7 +71,8 @@ pub(super) enum AliasEquation {
     Derivative(SignedVariable, SignedVariable),
 }
 
-/// What an equation says where it says no more than that.
+/// Reads an equation as an alias equation. `None` where it has more than two terms, factors other than plus or minus
+/// one, or leaves that are neither variables nor derivatives.
 pub(super) fn simple_form(pool: &Exprs, equation: &FlatEquation) -> Option<AliasEquation> {
     let mut terms = AliasTerms::default();
     terms.collect(pool, equation.lhs, false, 0)?;
@@ -77,6 +85,7 @@ pub(super) fn simple_form(pool: &Exprs, equation: &FlatEquation) -> Option<Alias
         _ => return None,
     };
     // `first*a + second*b = 0`
+    // `first*a + second*b = 0`: equal signs mean `a = -b`.
     let negated = first == second;
     match (pool.node(*a), pool.node(*b)) {
         (ExprNode::Var(a), ExprNode::Var(b)) if a != b => Some(AliasEquation::Equal(
@@ -91,18 +100,21 @@ pub(super) fn simple_form(pool: &Exprs, equation: &FlatEquation) -> Option<Alias
     }
 }
 
-/// Up to two leaves with signs; `true` is minus.
+/// The terms of `lhs - rhs`: at most two leaves, each with its sign.
 #[derive(Default)]
 struct AliasTerms {
+    /// The leaf, and `true` for a minus sign.
     found: Vec<(ExprId, bool)>,
 }
 
 impl AliasTerms {
+    /// Adds the terms of an expression. `None` where it is no sum of at most two leaves.
     fn collect(&mut self, pool: &Exprs, e: ExprId, negated: bool, depth: u32) -> Option<()> {
         if e == Exprs::ZERO {
             return Some(());
         }
         match pool.node(e) {
+            // A limit for the recursion: an expression nested deeper is left as it is.
             _ if depth > 4 => None,
             ExprNode::Var(_) | ExprNode::Der(_) if self.found.len() < 2 => {
                 self.found.push((e, negated));
@@ -118,7 +130,7 @@ impl AliasTerms {
     }
 }
 
-/// Both continuous, or both discrete of one type and equal.
+/// Whether two variables may be aliases: both continuous, or both discrete, of one type and with the same sign.
 fn may_join(draft: &DaeDraft, a: VarId, b: SignedVariable) -> bool {
     let continuous = |v: VarId| {
         let real = draft.variables[v.index()].ty == ScalarType::Real;
@@ -135,13 +147,13 @@ fn may_join(draft: &DaeDraft, a: VarId, b: SignedVariable) -> bool {
     discrete(a) && discrete(b.variable) && same && !b.negated
 }
 
-/// A parameter that is found at the start.
+/// Whether a variable is a Real parameter that initialization determines.
 fn is_found(draft: &DaeDraft, v: VarId) -> bool {
     draft.role(v) == SystemRole::FreeParameter && draft.variables[v.index()].ty == ScalarType::Real
 }
 
-/// A variable that equals a parameter found at the start begins its search at the parameter's guess where it has none of
-/// its own, and the other way round.
+/// Shares the start value between a free parameter and a variable that equals it: whichever has none takes that of the
+/// other as its guess.
 fn share_guess(draft: &mut DaeDraft, parameter: VarId, equal: SignedVariable) {
     if draft.role(equal.variable) != SystemRole::Continuous {
         return;
@@ -155,7 +167,8 @@ fn share_guess(draft: &mut DaeDraft, parameter: VarId, equal: SignedVariable) {
     draft.variables[to.index()].start = Some(signed(&mut draft.exprs, from, equal.negated));
 }
 
-/// `w = der(x)` links `x` to `w` unless that closes a circle. If `x` has a derivative already, `w` equals it.
+/// Processes equations `w = der(x)`: links `x` to `w` unless that closes a circle. If `x` has a derivative already, `w`
+/// becomes an alias of it. An equation that a link or a join expresses is not kept.
 fn link_derivatives(
     draft: &mut DaeDraft,
     classes: &mut AliasClasses,
@@ -166,6 +179,7 @@ fn link_derivatives(
     let candidates: Vec<_> =
         links.iter().filter(|(_, w, of)| unknown(w.variable) && unknown(of.variable)).copied().collect();
     for (i, w, of) in candidates {
+        // An earlier link may have joined sets, so the roots are looked up anew for each equation.
         let (w, of) = (classes.find(w.variable), classes.find_signed(of));
         // w.variable = +-(w.negated, of.negated) der(of.variable)
         let derivative = SignedVariable { variable: w.variable, negated: w.negated != of.negated };
@@ -173,6 +187,7 @@ fn link_derivatives(
     }
 }
 
+/// Drops the equations that are not kept, and their roles.
 fn retain(draft: &mut DaeDraft, kept: &[bool]) {
     let mut keep = kept.iter();
     draft.equations.retain(|_| *keep.next().expect("one flag an equation"));
@@ -180,19 +195,23 @@ fn retain(draft: &mut DaeDraft, kept: &[bool]) {
     draft.kinds.retain(|_| *keep.next().expect("one flag an equation"));
 }
 
-/// Union-find over variables with signs.
+/// Alias sets: a union-find forest over all variables in which each edge has a sign. Fields "by root" are valid at the
+/// root of a set only.
 struct AliasClasses {
+    /// By variable: its parent in the forest, with the sign between the two. A root is its own parent.
     parent: Vec<SignedVariable>,
+    /// By root: how many variables the set has, for union by size.
     size: Vec<u32>,
-    /// By root: holds an input or a sample, which nothing may determine.
+    /// By root: whether the set contains an input or a sample, which no equation may determine.
     given: Vec<bool>,
-    /// By root: its derivative.
+    /// By root: the variable that is its time derivative.
     derivative: Vec<Option<SignedVariable>>,
-    /// By root: the variable of which it is the derivative.
+    /// By root: a variable whose time derivative it is.
     integral: Vec<Option<VarId>>,
 }
 
 impl AliasClasses {
+    /// Each variable in a set of its own.
     fn new(draft: &DaeDraft) -> Self {
         let count = draft.variables.len();
         AliasClasses {
@@ -204,6 +223,7 @@ impl AliasClasses {
         }
     }
 
+    /// The root of a variable's set, and the sign of the variable relative to it. Compresses the path.
     fn find(&mut self, v: VarId) -> SignedVariable {
         let mut root = SignedVariable { variable: v, negated: false };
         while self.parent[root.variable.index()].variable != root.variable {
@@ -211,6 +231,7 @@ impl AliasClasses {
             root = SignedVariable { variable: next.variable, negated: root.negated != next.negated };
         }
         // Point everything on the way at the root.
+        // Second pass, path compression: every variable on the way gets the root as its parent, with its own sign.
         let mut at = SignedVariable { variable: v, negated: root.negated };
         while self.parent[at.variable.index()].variable != root.variable && at.variable != root.variable {
             let next = self.parent[at.variable.index()];
@@ -220,12 +241,14 @@ impl AliasClasses {
         root
     }
 
+    /// The root of a signed variable, with the combined sign.
     fn find_signed(&mut self, v: SignedVariable) -> SignedVariable {
         let root = self.find(v.variable);
         SignedVariable { variable: root.variable, negated: root.negated != v.negated }
     }
 
-    /// Makes `a` equal `b`; false when that is not possible or not new.
+    /// Makes `a` equal `b`. False where that is impossible (two given values, or a circle of derivatives) or where both
+    /// are in one set already; then the equation stays.
     fn join(&mut self, draft: &DaeDraft, a: VarId, b: SignedVariable) -> bool {
         let (a, b) = (self.find(a), self.find_signed(b));
         if a.variable == b.variable || !self.gifts_fit(a.variable, b.variable) || !self.chains_fit(a, b) {
@@ -244,8 +267,8 @@ impl AliasClasses {
         true
     }
 
-    /// Two given variables stay apart. So do a given one and a link of a chain: the chain would lose the equation that
-    /// determines it.
+    /// Whether two sets may be joined as far as given variables go. Two given variables stay apart. A given variable
+    /// and a member of a chain of derivatives stay apart too: the chain would lose the equation that determines it.
     fn gifts_fit(&self, a: VarId, b: VarId) -> bool {
         let linked = |v: VarId| self.derivative[v.index()].is_some() || self.integral[v.index()].is_some();
         match (self.given[a.index()], self.given[b.index()]) {
@@ -256,7 +279,7 @@ impl AliasClasses {
         }
     }
 
-    /// Whether the derivatives of both, as far as they are linked, can be made equal too.
+    /// Whether the derivatives of both, as far as they are linked, can be made equal too. Walks both chains upwards.
     fn chains_fit(&mut self, a: SignedVariable, b: SignedVariable) -> bool {
         let (mut a, mut b) = (a, b);
         while a.variable != b.variable {
@@ -271,13 +294,15 @@ impl AliasClasses {
             a = SignedVariable { variable: da.variable, negated: da.negated != a.negated };
             b = SignedVariable { variable: db.variable, negated: db.negated != b.negated };
         }
+        // The chains meet in one set: then the signs must agree, else the derivative would equal its own negative.
         a.negated == b.negated
     }
 
-    /// After `small` joined `large`: its derivative is that of `large` as well.
+    /// Moves the links of `small` to `large` after `small` joined it. If both have a derivative, these become equal
+    /// too.
     fn carry_links(&mut self, draft: &DaeDraft, small: VarId, large: SignedVariable) {
         if let Some(of) = self.integral[small.index()].take() {
-            // Sides of the link keep their meaning: readers go through `find`.
+            // Both sides of a link stay valid after joins, because readers look up the root.
             self.integral[large.variable.index()].get_or_insert(of);
         }
         if let Some(d) = self.derivative[small.index()].take() {
@@ -292,7 +317,9 @@ impl AliasClasses {
         }
     }
 
-    /// Makes `d` the derivative of the root `of`; false when that would close a circle.
+    /// Makes `d` the derivative of the root `of`. If `of` has a derivative already, the two are joined instead. False
+    /// where one of the two is given from outside, where `d` is the derivative of another variable already, or where a
+    /// circle would close; then the equation stays.
     fn link(&mut self, draft: &DaeDraft, of: VarId, d: SignedVariable) -> bool {
         if let Some(own) = self.derivative[of.index()] {
             let same = SignedVariable { variable: own.variable, negated: own.negated != d.negated };
@@ -301,7 +328,7 @@ impl AliasClasses {
         if self.given[of.index()] || self.given[d.variable.index()] || self.reaches(d.variable, of) {
             return false;
         }
-        // A variable is the derivative of one other at most, so that chains stay chains.
+        // A variable is the derivative of one other at most, so that chains do not branch.
         if self.integral[d.variable.index()].is_some() {
             return false;
         }
@@ -310,7 +337,7 @@ impl AliasClasses {
         true
     }
 
-    /// Whether `to` is `from` or one of its derivatives.
+    /// Whether `to` is in the set of `from` or in that of one of its derivatives.
     fn reaches(&mut self, from: VarId, to: VarId) -> bool {
         let to = self.find(to).variable;
         let mut at = self.find(from).variable;
@@ -325,8 +352,8 @@ impl AliasClasses {
         }
     }
 
-    /// Joining two variables of one chain of derivatives would make it a circle, and joining two derivatives of
-    /// different variables a fork.
+    /// Whether joining two sets breaks the chains: two members of one chain would make it a circle, and derivatives of
+    /// different variables would make a variable the derivative of two.
     fn would_close_circle(&mut self, a: VarId, b: VarId) -> bool {
         let linked = |s: &Self, v: VarId| s.derivative[v.index()].is_some() || s.integral[v.index()].is_some();
         if !linked(self, a) && !linked(self, b) {
@@ -341,8 +368,9 @@ impl AliasClasses {
         }
     }
 
-    /// Chooses the variable that stays in each class, and records the links between those. Variables whose derivative has
-    /// a name are `differentiated` though the equation that says so may be gone.
+    /// Chooses the representative of each set and stores the links between representatives in the draft. By variable:
+    /// its representative with the sign. `differentiated` adds the variables of link equations, which may have been
+    /// removed.
     fn settle(&mut self, draft: &mut DaeDraft, differentiated: impl Iterator<Item = VarId>) -> Vec<SignedVariable> {
         let count = draft.variables.len();
         let ranks = ranks(draft, differentiated);
@@ -362,27 +390,31 @@ impl AliasClasses {
         (0..count as u32).map(VarId).map(target).collect()
     }
 
-    /// Rewrites the links in terms of the variables that stay.
+    /// Writes the links to `DaeDraft::derivative`, in terms of the representatives.
     fn store_links(&mut self, draft: &mut DaeDraft, best: &[Option<VarId>]) {
         for root in 0..self.derivative.len() {
             let Some(d) = self.derivative[root] else { continue };
             let of = best[root].expect("a root has a class");
             let d_root = self.find(d.variable);
             let w = best[d_root.variable.index()].expect("a root has a class");
+            // The link holds between roots; the signs of both representatives relative to their roots go into it.
             let negated = self.find(of).negated ^ d.negated ^ d_root.negated ^ self.find(w).negated;
             draft.derivative[of.index()] = Some(SignedVariable { variable: w, negated });
         }
     }
 }
 
+/// The variables that are not their own representative.
 fn aliases(targets: &[SignedVariable]) -> Vec<Alias> {
     let pairs = targets.iter().enumerate().filter(|(i, t)| t.variable.index() != *i);
     pairs.map(|(i, t)| Alias { variable: VarId(i as u32), target: t.variable, negated: t.negated }).collect()
 }
 
-/// What makes a variable the better representative; larger wins.
+/// What makes a variable the better representative of its set; larger wins. In order of weight: given from outside,
+/// differentiated, `stateSelect`, fixed, with a start value, not hidden, no flow, a short name, an early declaration.
 type AliasRank = (bool, bool, StateSelect, bool, bool, bool, bool, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>);
 
+/// The rank of every variable.
 fn ranks(draft: &mut DaeDraft, named: impl Iterator<Item = VarId>) -> Vec<AliasRank> {
     let mut differentiated = vec![false; draft.variables.len()];
     named.for_each(|v| differentiated[v.index()] = true);
@@ -407,7 +439,8 @@ fn ranks(draft: &mut DaeDraft, named: impl Iterator<Item = VarId>) -> Vec<AliasR
     draft.variables.iter().enumerate().map(rank).collect()
 }
 
-/// Merges the attributes of an alias into its target.
+/// Merges the attributes of an alias into its target: start and `fixed`, `nominal`, `stateSelect`, and whether a `when`
+/// assigns it. `min` and `max` are not merged.
 fn merge(draft: &mut DaeDraft, known: &mut parameters::SignAnalysis, alias: Alias, diagnostics: &mut Vec<Diagnostic>) {
     let from = draft.variables[alias.variable.index()].clone();
     let start = from.start.map(|e| if alias.negated { draft.exprs.neg(e) } else { e });
@@ -417,6 +450,7 @@ fn merge(draft: &mut DaeDraft, known: &mut parameters::SignAnalysis, alias: Alia
         compare_starts(draft, known, alias, start, diagnostics);
     }
     let target = &mut draft.variables[alias.target.index()];
+    // A fixed start counts before a guess; of two guesses the one given further outside counts (MLS 8.6.2).
     if from.fixed && !target.fixed {
         target.start = start;
         target.fixed = true;
@@ -430,6 +464,8 @@ fn merge(draft: &mut DaeDraft, known: &mut parameters::SignAnalysis, alias: Alia
     target.state_select = merged_select(target.state_select, from.state_select);
 }
 
+/// The `stateSelect` of an alias set: the strongest wish for a state counts; without one, the strongest wish against
+/// it.
 fn merged_select(a: StateSelect, b: StateSelect) -> StateSelect {
     match (a, b) {
         (StateSelect::Default, other) | (other, StateSelect::Default) => other,
@@ -438,7 +474,8 @@ fn merged_select(a: StateSelect, b: StateSelect) -> StateSelect {
     }
 }
 
-/// Two fixed starts of one quantity must be equal: now, by value, and in every run, by a check.
+/// Compares two starts that both are conditions. Values that differ now are reported. Others become an initial check,
+/// because parameters may change between runs.
 fn compare_starts(
     draft: &mut DaeDraft,
     known: &mut parameters::SignAnalysis,
@@ -454,6 +491,7 @@ fn compare_starts(
     }
     let size = known.value(&draft.exprs, ours).unwrap_or(f64::NAN);
     let gap = known.value(&draft.exprs, difference).unwrap_or(f64::NAN);
+    // NaN, for a value that is not known before the run, compares false and leads to the check.
     if gap.abs() > 1e-9 * size.abs().max(1e-12) {
         diagnostics.push(messages::contradicting_aliases(draft, known, alias));
     } else {
@@ -462,7 +500,7 @@ fn compare_starts(
     }
 }
 
-/// Replaces aliases and linked derivatives everywhere.
+/// Replaces aliases and linked derivatives in all expressions, actions and crossings.
 fn rewrite(draft: &mut DaeDraft, targets: &[SignedVariable]) {
     let derivative = draft.derivative.clone();
     let roles = draft.roles.clone();
@@ -471,6 +509,7 @@ fn rewrite(draft: &mut DaeDraft, targets: &[SignedVariable]) {
         ExprNode::Der(v) => {
             let target = targets[v.index()];
             if !matches!(roles[target.variable.index()], SystemRole::Continuous | SystemRole::Input) {
+                // The derivative of what changes at events only, or not at all, is 0.
                 return Some(Exprs::ZERO);
             }
             let (e, turned) = match derivative[target.variable.index()] {
@@ -486,6 +525,7 @@ fn rewrite(draft: &mut DaeDraft, targets: &[SignedVariable]) {
         _ => None,
     });
     draft.map_expressions(&map);
+    // `map_expressions` has rewritten the values; variables that are no expressions follow here.
     for action in &mut draft.actions {
         if let EventActionKind::Reinit(v, value) = &mut action.kind {
             let target = targets[v.index()];
@@ -498,6 +538,7 @@ fn rewrite(draft: &mut DaeDraft, targets: &[SignedVariable]) {
     }
 }
 
+/// The expression, or its negative.
 fn signed(pool: &mut Exprs, e: ExprId, negated: bool) -> ExprId {
     if negated { pool.neg(e) } else { e }
 }

@@ -1,4 +1,9 @@
-//! The steps of the analysis in their order.
+//! The steps of structural analysis in their order.
+//!
+//! [`analyze`] is the entry of `structure`. [`run`] does one pass over all steps; [`settled`] repeats it as long as
+//! parameters of value 0 turn out to decide about the structure. Each step works on one [`DaeDraft`]; the order of
+//! steps matters, and comments in [`run`] say why. All faults of a model are diagnostics: `Err` ends the analysis at
+//! once, a diagnostic in the list lets it go on.
 
 use super::draft::{DaeDraft, EquationRole, SystemRole};
 use super::incidence::{IncidenceScanner, NONE};
@@ -18,9 +23,9 @@ use bramah_syntax::diag::{Diagnostic, StageResult};
 
 /// Sorts a flat model into a [`Dae`].
 ///
-/// Errors: circles of parameters (E214), their ranges (E215) and what is asserted of them (E503), singular structure
-/// (E301, E302, E303), constraints that cannot be differentiated (E304), start values that contradict each other (E401).
-/// A note lists start values that were chosen.
+/// Errors: circles of parameters (E214), their ranges (E215) and assertions about them (E503), singular structure
+/// (E301, E302, E303), constraints that cannot be differentiated (E304), start values that contradict each other
+/// (E401). A note lists start values that were chosen. The result has no value if any diagnostic is an error.
 pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> StageResult<Dae> {
     let mut diagnostics = Vec::new();
     match settled(flat, choice, &mut diagnostics) {
@@ -33,14 +38,18 @@ pub fn analyze(flat: &FlatModel, choice: &StateChoice) -> StageResult<Dae> {
     }
 }
 
-/// With the structure that parameters of value 0 leave.
+/// Repeats the analysis until no further parameter of value 0 decides about the structure.
+///
+/// Each pass drops the products that the parameters found so far make 0. With `FlatModel::varied` there is one pass
+/// only, because parameters must stay free to change. On failure of a later pass the result of the pass before stays.
+/// The loop ends because the list of parameters only grows.
 fn settled(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnostic>) -> Result<Dae, Diagnostic> {
     let (mut last, mut decisive) = run(flat, choice, &[], diagnostics)?;
     let mut known = 0;
     while decisive.len() > known && !flat.varied {
         known = decisive.len();
         let mut said = Vec::new();
-        // where the model is singular with them, its equations as written tell more
+        // A singular reduced model is not reported; the result for the equations as written stays.
         let Ok((dae, further)) = run(flat, choice, &decisive, &mut said) else { break };
         if said.iter().any(Diagnostic::is_error) {
             break;
@@ -53,7 +62,11 @@ fn settled(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnos
     Ok(last)
 }
 
-/// Without the products that are 0 by the parameters in `decisive`; with those that turn out to decide about the structure.
+/// One pass over all steps.
+///
+/// Products that are 0 by the parameters in `decisive` are dropped first. Returns, beside the result, the parameters
+/// whose value 0 decides about the structure; the caller may repeat the pass with them. Diagnostics that do not end the
+/// analysis go to `diagnostics`. `Err` is a fault that ends it.
 fn run(
     flat: &FlatModel,
     choice: &StateChoice,
@@ -64,23 +77,29 @@ fn run(
     let order = parameters::order(&mut draft)?;
     let values = parameters::values(&draft, &order);
     diagnostics.extend(parameters::check(&draft, &order, &values));
+    // Before aliases: conditions and modes are variables and may be aliases of others.
     make_discrete_equations(&mut draft);
     prefer_reinitialized(&mut draft);
     let mut known = SignAnalysis::new(&draft, values.clone());
+    // With a value out of range, an assertion that fails would be a consequence of it.
     if !diagnostics.iter().any(Diagnostic::is_error) {
         diagnostics.extend(assertions::check(&draft, &mut known));
     }
     zeros::take_out(&mut draft, &mut known, decisive);
+    // Zeros first: without the product, `R*i = v1 - v2` is an alias equation.
     let aliases = alias::eliminate(&mut draft, &mut known, diagnostics);
     cancelling::replace(&mut draft, &mut known);
+    // After alias elimination, which may replace the side that is a lone discrete variable.
     discrete::classify(&mut draft);
     discrete::absorb_initial_pres(&mut draft);
     refuse_input_derivatives(&draft)?;
+    // Before index reduction, which needs a structurally regular system to terminate.
     regularity::check(&draft).map_err(|found| explain_singular(flat, &draft, &aliases, &found))?;
     if let Some(flows) = closed_groups::find(&draft, &aliases) {
         return Err(messages::closed_group(&draft, &aliases, &flows));
     }
 
+    // Before the search for dependence, which treats factors that are known to be constant as numbers.
     constants::read(&mut draft);
     let mut reduction = dependence::expose(&mut draft, &mut known, !flat.varied)?;
     reduction.reduce(&mut draft)?;
@@ -88,20 +107,23 @@ fn run(
     let chosen = dummy_derivatives::select(&mut draft, &reduction, &values, choice);
     let states = settle_states(&mut draft, &mut reduction, &chosen.dummies);
     diagnostics.extend(reinit_of_no_state(&draft, &states.states));
+    // Only now: index reduction needs `Der` and its link to recognise chains of derivatives.
     replace_linked_derivatives(&mut draft);
     let running = running_system(&draft, &reduction, &states)?;
 
     let mut blocks = SystemBlocks::sort_running(&mut draft, &mut known, &running, &states.states);
-    // before the conditions of the start stand among the equations
+    // Before `initial::assemble` appends initial conditions to the equations, which are no balances.
     let mut conserved = conserved::find(&mut draft, &mut known, &states.states);
     let with_derivatives = start_derivatives::add(&mut draft, &running, &states.states)?;
     let at_start = with_derivatives.as_ref().unwrap_or(&running);
     let model = initial::InitializationContext { running: at_start, states: &states.states, demoted: &states.demoted };
     let start = initial::assemble(&mut draft, &mut known, &model);
     diagnostics.extend(start.diagnostics);
+    // On the systems before tearing; a matching without the zero products shows whether the structure needs them.
     let further = zeros::decisive(&mut draft, &mut known, [&running, &start.system]);
     blocks.sort_initial(&mut draft, &mut known, &start.system);
     let stated = conserved.iter_mut().flat_map(|c| [&mut c.quantity, &mut c.rate]);
+    // After sorting, on the continuous system only: see `duplicates`.
     duplicates::share(&mut draft.exprs, &mut blocks.continuous, stated);
     let StatePartition { states, demoted, .. } = states;
     let rest = AnalysisFindings { order, aliases, states, demoted, selections: chosen.selections, conserved };
@@ -111,14 +133,18 @@ fn run(
     Ok((dae, further))
 }
 
+/// Turns `delay`, event-generating expressions and `when` clauses into variables, equations and actions.
 fn make_discrete_equations(draft: &mut DaeDraft) {
+    // `delay` first: its stand-in is an input, and relations that read it have to be watched.
     delays::extract(draft);
     events::extract(draft);
     discrete::translate_whens(draft);
 }
 
-/// Explains with all equations and unknowns as the user wrote them, before aliases were eliminated, if they show the
-/// fault too.
+/// The message for a singular system.
+///
+/// It is made from the equations as the user wrote them, before alias elimination, if these are singular too; else from
+/// the reduced ones. For this the flat model is translated anew, without the steps between.
 fn explain_singular(
     flat: &FlatModel,
     reduced: &DaeDraft,
@@ -134,7 +160,7 @@ fn explain_singular(
     }
 }
 
-/// What `reinit` sets must be a state if that is possible.
+/// Raises `stateSelect` of what `reinit` sets to `prefer`, since only a state can be set.
 fn prefer_reinitialized(draft: &mut DaeDraft) {
     for action in &draft.actions {
         if let EventActionKind::Reinit(v, _) = action.kind {
@@ -144,6 +170,8 @@ fn prefer_reinitialized(draft: &mut DaeDraft) {
     }
 }
 
+/// An error where an equation contains the derivative of an input: the trajectory of an input is known by its values
+/// only. Only the first such equation is reported.
 fn refuse_input_derivatives(draft: &DaeDraft) -> Result<(), Diagnostic> {
     let mut walk = bramah_expr::visit::NodeTraversal::default();
     for equation in draft.equations.iter().chain(&draft.initial_equations) {
@@ -163,6 +191,7 @@ fn refuse_input_derivatives(draft: &DaeDraft) -> Result<(), Diagnostic> {
     Ok(())
 }
 
+/// An error (E305) for each `reinit` of a variable that is not among the states. `states` is ascending.
 fn reinit_of_no_state(draft: &DaeDraft, states: &[VarId]) -> Vec<Diagnostic> {
     let reinits = draft.actions.iter().filter_map(|action| match action.kind {
         EventActionKind::Reinit(v, _) if states.binary_search(&v).is_err() => {
@@ -179,20 +208,24 @@ struct StatePartition {
     states: Vec<VarId>,
     /// Differentiated, but not states; ascending.
     demoted: Vec<VarId>,
-    /// By column: known when the continuous system is solved.
+    /// By column of the index reduction: whether its variable is integrated, so that the continuous system takes it as
+    /// known.
     is_state: Vec<bool>,
 }
 
-/// Every variable with a derivative that is no dummy is a state. Dummies become variables.
+/// Makes every variable with a derivative that is no dummy a state, and every dummy derivative an algebraic variable.
+/// `dummies` are columns of the reduction.
 fn settle_states(draft: &mut DaeDraft, reduction: &mut IndexReduction, dummies: &[u32]) -> StatePartition {
     let mut is_dummy = vec![false; reduction.columns.len()];
     for &c in dummies {
         is_dummy[c as usize] = true;
+        // A dummy derivative is an algebraic unknown and needs a variable of its own.
         reduction.materialize(draft, c);
     }
     let mut found =
         StatePartition { states: Vec::new(), demoted: Vec::new(), is_state: vec![false; reduction.columns.len()] };
     for c in 0..reduction.columns.len() {
+        // Only columns that are variables and have a derivative column can be integrated.
         let (derivative, variable) = (reduction.columns[c].derivative, reduction.variable(c as u32));
         let (Some(v), true) = (variable, derivative != NONE) else { continue };
         if is_dummy[derivative as usize] {
@@ -207,7 +240,8 @@ fn settle_states(draft: &mut DaeDraft, reduction: &mut IndexReduction, dummies: 
     found
 }
 
-/// After this `Der` stands only for derivatives of states that are no variables themselves.
+/// Replaces `Der(x)` by the variable that is the derivative of `x`. Afterwards `Der` stands only for derivatives of
+/// states that are no variables themselves.
 fn replace_linked_derivatives(draft: &mut DaeDraft) {
     let links = draft.derivative.clone();
     if links.iter().all(Option::is_none) {
@@ -220,7 +254,10 @@ fn replace_linked_derivatives(draft: &mut DaeDraft) {
     draft.map_expressions(&map);
 }
 
-/// All equations between events, matched; discrete ones behind the continuous ones.
+/// The equations that hold during the run, matched with their unknowns.
+///
+/// Rows and columns come in the same order: continuous ones first, then discrete ones. States, inputs and parameters
+/// are known and have no column. `Err` where no perfect matching exists.
 fn running_system(
     draft: &DaeDraft,
     reduction: &IndexReduction,
@@ -243,6 +280,7 @@ fn running_system(
             if continuous {
                 scanner.push(&draft.exprs, sides, column, |c| c < continuous_columns, &mut system.incidence);
             } else {
+                // A discrete equation is an assignment: it can be solved only for a variable that is one of its sides.
                 let lone = discrete::lone_unknowns(draft, &equation, kind);
                 let lone: Vec<u32> = lone.iter().filter_map(|&v| columns.of(Unknown::Var(v))).collect();
                 scanner.push_discrete(&draft.exprs, sides, &lone, column, &mut system.incidence);
@@ -255,7 +293,10 @@ fn running_system(
     Ok(system)
 }
 
-/// The regularity check has seen to it that the counts fit; what is left are constraints that depend on each other.
+/// An error where the matching is not perfect.
+///
+/// The regularity check has made sure that the counts fit, so what is left are constraints and derivatives that depend
+/// on each other. The message names the overdetermined equations and the underdetermined unknowns.
 fn check_matched(draft: &DaeDraft, system: &EquationSystem) -> Result<(), Diagnostic> {
     let Matching { column_of, row_of } = &system.matching;
     if column_of.iter().chain(row_of).all(|&p| p != NONE) {
@@ -267,17 +308,22 @@ fn check_matched(draft: &DaeDraft, system: &EquationSystem) -> Result<(), Diagno
     Err(messages::dependent_constraints(draft, &equations, &unknowns))
 }
 
-/// The three sorted systems.
+/// The three sorted systems, as lists of blocks.
 #[derive(Default)]
 struct SystemBlocks {
+    /// The system between events.
     continuous: Vec<BltBlock>,
+    /// The system at events.
     event: Vec<BltBlock>,
+    /// The system at the start.
     initial: Vec<BltBlock>,
     /// `der(x) := w` of states whose derivative is a variable.
     derivatives: Vec<BltBlock>,
 }
 
 impl SystemBlocks {
+    /// Sorts the continuous and the event system. The continuous blocks are made once; the event system contains them
+    /// with the discrete equations in between.
     fn sort_running(
         draft: &mut DaeDraft,
         known: &mut SignAnalysis,
@@ -289,11 +335,13 @@ impl SystemBlocks {
         let (components, blocks) = system.continuous_blocks(&mut solver);
         made.event = system.with_discrete(&mut solver, &components, &blocks);
         made.continuous = blocks;
+        // At the end: no equation reads `der(x)` any more, only the integrator does.
         made.event.extend_from_slice(&made.derivatives);
         made.continuous.extend_from_slice(&made.derivatives);
         made
     }
 
+    /// Sorts the initial system. It has its own continuous blocks, since its rows and unknowns differ.
     fn sort_initial(&mut self, draft: &mut DaeDraft, known: &mut SignAnalysis, system: &EquationSystem) {
         let mut solver = BlockSolver::new(draft, known);
         let (components, blocks) = system.continuous_blocks(&mut solver);
@@ -302,6 +350,7 @@ impl SystemBlocks {
     }
 }
 
+/// Assignments `der(x) := w` for states whose derivative is a variable `w`, with an equation for each for messages.
 fn linked_derivatives(draft: &mut DaeDraft, states: &[VarId]) -> Vec<BltBlock> {
     let mut blocks = Vec::new();
     for &x in states {
@@ -316,16 +365,23 @@ fn linked_derivatives(draft: &mut DaeDraft, states: &[VarId]) -> Vec<BltBlock> {
     blocks
 }
 
-/// What the steps found beside blocks.
+/// The parts of a `Dae` that the steps found beside the blocks.
 struct AnalysisFindings {
+    /// Parameters in order of evaluation.
     order: Vec<VarId>,
+    /// Eliminated variables.
     aliases: Vec<Alias>,
+    /// Integrated variables, ascending.
     states: Vec<VarId>,
+    /// Differentiated variables that are no states, ascending.
     demoted: Vec<VarId>,
+    /// Groups with a choice of states.
     selections: Vec<StateSelection>,
+    /// Quantities that may replace states in the integration.
     conserved: Vec<ConservedQuantity>,
 }
 
+/// Puts the [`Dae`] together. Initial checks become residuals, each with an equation for messages.
 fn assemble(flat: &FlatModel, mut draft: DaeDraft, blocks: SystemBlocks, rest: AnalysisFindings) -> Dae {
     let mut initial_checks = Vec::new();
     for equation in std::mem::take(&mut draft.initial_checks) {

@@ -1,4 +1,7 @@
-//! Assertions about parameters alone: reported before the model is run, for no run can make them hold.
+//! Assertions about parameters alone. They are reported before the model is run, because no run can make them hold.
+//!
+//! Enters: the draft with its parameter values. Leaves: one diagnostic for each contradicted assertion. `analysis`
+//! calls [`check`] once, after the ranges of parameters have been checked.
 
 use super::draft::DaeDraft;
 use super::parameters::SignAnalysis;
@@ -6,17 +9,22 @@ use crate::flat::{FlatAssertion, MessagePart, MessageTemplate, ScalarType};
 use bramah_expr::Exprs;
 use bramah_syntax::diag::{Code, Diagnostic};
 
-/// Assertions that the parameters as they stand in the model contradict (E503). Warnings are left to the run.
+/// Assertions that the parameters as they stand in the model contradict (E503). Assertions with
+/// `AssertionLevel.warning` are left to the run. A condition whose value depends on anything but parameters is unknown
+/// here and left to the run too.
 pub(super) fn check(draft: &DaeDraft, known: &mut SignAnalysis) -> Vec<Diagnostic> {
     let broken = |a: &&FlatAssertion| !a.warning && known.value(&draft.exprs, a.condition) == Some(0.0);
     let broken: Vec<&FlatAssertion> = draft.asserts.iter().filter(broken).collect();
     broken.into_iter().map(|assert| complaint(draft, known, assert)).collect()
 }
 
+/// The message about one contradicted assertion: its text, the component that states it, and the values of the
+/// parameters in its condition.
 fn complaint(draft: &DaeDraft, known: &mut SignAnalysis, assert: &FlatAssertion) -> Diagnostic {
     let text = words(&draft.exprs, known, &assert.message);
     let mut made = Diagnostic::new(Code::AssertionFailed, text);
     let holder = &draft.instances[assert.origin.instance as usize];
+    // Instance 0 is the model itself, which needs no place of its own.
     if assert.origin.instance != 0 {
         made = made.at(holder.span, "in this component").instance(holder.name.clone()).class(holder.class.clone());
     }
@@ -30,7 +38,8 @@ fn complaint(draft: &DaeDraft, known: &mut SignAnalysis, assert: &FlatAssertion)
     if values.is_empty() { made } else { made.note(values.join(", ")) }
 }
 
-/// The message with the values that are known.
+/// The text of a message with the values that are known. A Boolean prints as `true` or `false`; an unknown number
+/// prints as `?`.
 fn words(pool: &Exprs, known: &mut SignAnalysis, message: &MessageTemplate) -> String {
     let piece = |part: &MessagePart| match part {
         MessagePart::Text(words) => words.clone(),

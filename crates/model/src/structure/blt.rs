@@ -1,10 +1,16 @@
 //! Block lower triangular form: strongly connected components in the order in which they can be solved.
+//!
+//! The nodes are matched equations; an edge leads from an equation to the equation that determines one of its unknowns.
+//! A component of one node is an explicit equation, one of several nodes is an algebraic loop. The algorithm is that of
+//! R. Tarjan, Depth-first search and linear graph algorithms, SIAM J. Comput. 1, 1972. `sorting` calls it for
+//! equations, `parameters` for bindings.
 
 use super::incidence::NONE;
 
-/// Tarjan's algorithm without recursion. Components come out dependencies first, members in order of their numbers.
+/// Finds all strongly connected components, without recursion, in time linear in nodes and edges.
 ///
-/// `successors` appends to its second argument the nodes that a node depends on.
+/// `successors` appends to its second argument the nodes that a node depends on. It is called once for each node.
+/// Components come out with dependencies first, their members in ascending order.
 pub(super) fn components(nodes: usize, mut successors: impl FnMut(u32, &mut Vec<u32>)) -> StrongComponents {
     let mut search = TarjanSearch {
         index: vec![NONE; nodes],
@@ -24,25 +30,27 @@ pub(super) fn components(nodes: usize, mut successors: impl FnMut(u32, &mut Vec<
     search.found
 }
 
-/// Strongly connected components, in order.
+/// Strongly connected components in an order in which each depends on earlier ones only.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct StrongComponents {
+    /// Where each component begins in `members`, and one more entry for the end.
     starts: Vec<u32>,
+    /// The nodes of all components, one component after the other.
     members: Vec<u32>,
 }
 
 impl StrongComponents {
-    /// How many there are.
+    /// The number of components.
     pub fn len(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// The nodes of one, ascending.
+    /// The nodes of a component, ascending.
     pub fn get(&self, component: usize) -> &[u32] {
         &self.members[self.starts[component] as usize..self.starts[component + 1] as usize]
     }
 
-    /// Those for which `keep` says true, in order.
+    /// The components for which `keep` is true, in the same order.
     pub fn filtered(&self, keep: impl Fn(&[u32]) -> bool) -> StrongComponents {
         let mut kept = StrongComponents { starts: vec![0], members: Vec::with_capacity(self.members.len()) };
         for members in self.iter().filter(|members| keep(members)) {
@@ -52,31 +60,44 @@ impl StrongComponents {
         kept
     }
 
-    /// All, in order.
+    /// All components, in order.
     pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
         (0..self.len()).map(|c| self.get(c))
     }
 }
 
-/// A node being searched: its edges are a stretch of `TarjanSearch::edges`.
+/// A node on the path of the depth-first search. Frames replace the call stack of the recursive formulation.
 struct TarjanFrame {
+    /// The node.
     node: u32,
+    /// Where its edges begin in [`TarjanSearch::edges`].
     first: u32,
+    /// The edge to follow next. The edges of the last frame end at the end of the list.
     next: u32,
 }
 
+/// The state of the search. Vectors without another note are indexed by node.
 struct TarjanSearch {
+    /// The number of the node in the order of discovery, or [`NONE`] before it is discovered.
     index: Vec<u32>,
+    /// The lowest discovery number that the node is known to reach within its component (Tarjan's lowlink).
     low: Vec<u32>,
+    /// Whether the node is on `stack`: discovered, but its component is not complete.
     on_stack: Vec<bool>,
+    /// Discovered nodes whose component is not complete, in order of discovery.
     stack: Vec<u32>,
+    /// The path from the root to the node being searched.
     frames: Vec<TarjanFrame>,
+    /// The edges of all nodes on the path, one stretch for each frame.
     edges: Vec<u32>,
+    /// How many nodes have been discovered.
     count: u32,
+    /// The components completed so far.
     found: StrongComponents,
 }
 
 impl TarjanSearch {
+    /// Searches everything that is reachable from a root.
     fn from(&mut self, root: u32, successors: &mut impl FnMut(u32, &mut Vec<u32>)) {
         self.enter(root, successors);
         while let Some(frame) = self.frames.last_mut() {
@@ -88,12 +109,14 @@ impl TarjanSearch {
             frame.next += 1;
             if self.index[target as usize] == NONE {
                 self.enter(target, successors);
+            // An edge to a complete component is no way back; only nodes on the stack can share the component.
             } else if self.on_stack[target as usize] {
                 self.low[node as usize] = self.low[node as usize].min(self.index[target as usize]);
             }
         }
     }
 
+    /// Discovers a node: numbers it, puts it on the stack and lists its edges.
     fn enter(&mut self, node: u32, successors: &mut impl FnMut(u32, &mut Vec<u32>)) {
         self.index[node as usize] = self.count;
         self.low[node as usize] = self.count;
@@ -105,19 +128,23 @@ impl TarjanSearch {
         self.frames.push(TarjanFrame { node, first, next: first });
     }
 
+    /// Finishes the last node of the path and passes its lowlink to its parent.
     fn leave(&mut self) {
         let frame = self.frames.pop().expect("called with a frame");
+        // The edges of the node are the last stretch of the list.
         self.edges.truncate(frame.first as usize);
         let low = self.low[frame.node as usize];
         if let Some(parent) = self.frames.last() {
             let parent = parent.node as usize;
             self.low[parent] = self.low[parent].min(low);
         }
+        // The node reaches nothing discovered earlier, so it is the root of its component.
         if low == self.index[frame.node as usize] {
             self.close(frame.node);
         }
     }
 
+    /// Moves the nodes from `root` to the top of the stack into a new component.
     fn close(&mut self, root: u32) {
         let first = self.found.members.len();
         while let Some(node) = self.stack.pop() {

@@ -1,8 +1,11 @@
 //! Sums that cancel against each other further than their structure shows.
 //!
-//! A star of windings without neutral says `i1 + i2 + i3 = 0`, the inductance that its zero sequence sees `3*i0 = i1 + i2 +
-//! i3`: together `i0 = 0`, so that `i0` is no state, which neither equation tells. Only what leaves a single variable
-//! is replaced; all other sums stay as they were written.
+//! A star connection of windings without neutral states `i1 + i2 + i3 = 0`; the zero-sequence inductance states `3*i0 =
+//! i1 + i2 + i3`. Together they mean `i0 = 0`, so `i0` is no state, although neither equation shows that. This step
+//! finds pairs of sums of which one, subtracted from a multiple of the other, leaves a single variable. It replaces one
+//! of the two by `variable = 0`. All other sums stay as they were written.
+//!
+//! `analysis` calls [`replace`] after alias elimination. `conserved` reuses [`terms`] and [`factor`].
 
 use super::draft::{DaeDraft, EquationRole, SystemRole};
 use super::parameters::SignAnalysis;
@@ -10,13 +13,13 @@ use crate::flat::{FlatEquation, Variability};
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use rustc_hash::FxHashMap;
 
-/// A factor below this part of those it comes from has cancelled.
+/// A factor whose size is below this part of the factors it comes from counts as 0.
 const CANCELLED: f64 = 1e-12;
-/// Longer sums are not compared.
+/// Sums with more terms are not compared, to bound the work.
 const LONGEST: usize = 64;
 
-/// Replaces sums of which another one leaves a single variable by `variable = 0`: those of the model by themselves, then
-/// those that hold at the start with the help of the model's.
+/// Replaces sums of which another one leaves a single variable by `variable = 0`. Equations of the model are compared
+/// with each other; initial equations are compared with each other and with those of the model.
 pub(super) fn replace(draft: &mut DaeDraft, known: &mut SignAnalysis) {
     let mut sums = CancellationRows::default();
     let of_model: Vec<usize> =
@@ -27,6 +30,8 @@ pub(super) fn replace(draft: &mut DaeDraft, known: &mut SignAnalysis) {
     for (i, v) in found.drain(..) {
         set(&mut draft.exprs, &mut draft.equations[i], v);
     }
+    // From here on an initial equation takes part in each pair, and only initial equations are replaced: an equation
+    // that holds at the start only must not change one that holds always.
     let first = sums.rows.len();
     let of_start: Vec<usize> = (0..draft.initial_equations.len()).collect();
     sums.extend(draft, known, &draft.initial_equations, &of_start);
@@ -36,23 +41,26 @@ pub(super) fn replace(draft: &mut DaeDraft, known: &mut SignAnalysis) {
     }
 }
 
+/// Makes an equation say `v = 0`.
 fn set(pool: &mut Exprs, equation: &mut FlatEquation, v: VarId) {
     (equation.lhs, equation.rhs) = (pool.var(v), Exprs::ZERO);
 }
 
-/// Variables with their factors, in the order of variables.
+/// A sum of variables with constant factors, in ascending order of variables. No variable occurs twice.
 pub(super) type VariableSum = Vec<(VarId, f64)>;
 
+/// The sums that are compared.
 #[derive(Default)]
 struct CancellationRows {
-    /// The equations, with their sums.
+    /// Each equation, by its index, with its sum. Rows of the model come before initial ones.
     rows: Vec<(usize, VariableSum)>,
-    /// The rows that hold a variable, or held it.
+    /// By variable: the rows that contain it, or contained it once.
     users: FxHashMap<VarId, Vec<usize>>,
 }
 
 impl CancellationRows {
-    /// Adds those of these equations that are sums.
+    /// Adds those of the equations `which` that are sums. An equation with a single variable states that it is 0; the
+    /// variable is dropped from all rows.
     fn extend(&mut self, draft: &DaeDraft, known: &mut SignAnalysis, equations: &[FlatEquation], which: &[usize]) {
         let mut zero = Vec::new();
         for &i in which {
@@ -70,8 +78,10 @@ impl CancellationRows {
         zero.into_iter().for_each(|v| self.set_zero(v));
     }
 
-    /// Calls `found` with every equation from row `first` on that another one reduces to a single variable; until none is
-    /// left, for each makes others shorter. Of two, the longer one is replaced where it may be.
+    /// Calls `found` with every equation from row `first` on that another one reduces to a single variable.
+    ///
+    /// Repeats until no pair is left, because each variable that is 0 makes other sums shorter. Of two rows the longer
+    /// one is replaced, unless it is before `first`.
     fn reduce(&mut self, first: usize, mut found: impl FnMut(usize, VarId)) {
         let mut reduced = true;
         while std::mem::take(&mut reduced) {
@@ -80,46 +90,52 @@ impl CancellationRows {
                 let replaced = if other >= first { other } else { row };
                 found(self.rows[replaced].0, v);
                 self.set_zero(v);
+                // An empty row takes part in no further pair.
                 self.rows[replaced].1.clear();
                 reduced = true;
             }
         }
     }
 
-    /// Takes a variable that is 0 out of all sums.
+    /// Drops a variable that is 0 from all rows.
     fn set_zero(&mut self, v: VarId) {
         for row in self.users.remove(&v).unwrap_or_default() {
             self.rows[row].1.retain(|term| term.0 != v);
         }
     }
 
-    /// A row that holds all variables of this one and at most one more, and the single variable that both leave; one of them
-    /// from row `first` on.
+    /// A partner for a row: another row that contains all its variables and at most one more, so that both together
+    /// leave a single variable. Returns the partner and that variable. One of the two rows is at or after `first`.
+    /// `None` where there is no partner.
     fn single_beside(&self, row: usize, first: usize) -> Option<(usize, VarId)> {
         let sum = &self.rows[row].1;
+        // A partner contains all variables of the row, so it is enough to try the users of the rarest one.
         let rarest = sum.iter().map(|(v, _)| &self.users[v]).min_by_key(|rows| rows.len())?;
         let mut others = rarest.iter().copied().filter(|&other| other != row && row.max(other) >= first);
         others.find_map(|other| single(sum, &self.rows[other].1).map(|v| (other, v)))
     }
 }
 
-/// The factor of a variable in a sum; 0 where it does not occur.
+/// The factor of a variable in a sum; 0 where it does not occur. Binary search.
 pub(super) fn factor(sum: &VariableSum, v: VarId) -> f64 {
     sum.binary_search_by_key(&v, |t| t.0).map_or(0.0, |i| sum[i].1)
 }
 
-/// The only variable of a multiple of `b`, as long or longer by one, taken from `a`.
+/// The only variable that is left when a multiple of `b` is subtracted from `a`. `b` must be as long as `a` or longer
+/// by one. `None` where more or less than one variable is left.
 fn single(a: &VariableSum, b: &VariableSum) -> Option<VarId> {
     if a.len() < 2 || b.len() < a.len() || b.len() > a.len() + 1 {
         return None;
     }
     let ratios = a.iter().map(|&(v, x)| x / factor(b, v)).filter(|r| r.is_finite());
+    // At most one variable does not cancel. So of the ratios of any two shared variables one is the right multiple.
     ratios.take(2).find_map(|ratio| {
         let all = a.iter().chain(b).map(|t| t.0);
         let left = |v: &VarId| {
             let (x, y) = (factor(a, *v), ratio * factor(b, *v));
             (x - y).abs() > CANCELLED * x.abs().max(y.abs())
         };
+        // Each shared variable comes from both sums, so three entries are enough to see two different ones.
         let mut rest: Vec<VarId> = all.filter(left).take(3).collect();
         rest.dedup();
         match rest[..] {
@@ -129,7 +145,8 @@ fn single(a: &VariableSum, b: &VariableSum) -> Option<VarId> {
     })
 }
 
-/// The terms of `lhs - rhs` where that is a sum of continuous unknowns with factors that no run changes.
+/// The terms of `lhs - rhs` where that is a sum of continuous unknowns with factors that no run changes: numbers and
+/// constants. `None` for anything else, for repeated variables, and for more than [`LONGEST`] terms.
 pub(super) fn terms(draft: &DaeDraft, known: &mut SignAnalysis, equation: &FlatEquation) -> Option<VariableSum> {
     let pool = &draft.exprs;
     let mut number = |e: ExprId| {
@@ -158,6 +175,7 @@ pub(super) fn terms(draft: &DaeDraft, known: &mut SignAnalysis, equation: &FlatE
         }
     }
     found.sort_unstable_by_key(|t| t.0);
+    // A variable that occurs twice may cancel; such an equation is left to other steps.
     let distinct = found.windows(2).all(|pair| pair[0].0 != pair[1].0);
     (distinct && found.iter().all(|t| t.1 != 0.0 && t.1.is_finite())).then_some(found)
 }

@@ -1,10 +1,14 @@
 //! Groups of nodes that exchange nothing with a reference, such as a circuit without ground.
 //!
-//! There every sum of flows follows from the others, although each could be matched with an unknown: the system looks
-//! regular but is singular. In a closed group each flow stands in exactly two sums, so that with suitable factors they
-//! add up to `0 = 0`. The factors are signs, and what the flows are multiplied with: where mass passes, the balance of
-//! a component is `rho(p_a) q_a + rho(p_b) q_b = 0`, that of a node `q_1 + q_2 = 0`, and the densities of all that ends
-//! at the node are one expression of its pressure.
+//! In such a group every sum of flows follows from the others. Each sum can still be matched with an unknown, so the
+//! system looks structurally regular but is singular. In a closed group each flow occurs in exactly two sums, and with
+//! suitable factors the sums add up to `0 = 0`.
+//!
+//! The factors are signs and what the flows are multiplied with. Where mass passes, the balance of a component is
+//! `rho(p_a) q_a + rho(p_b) q_b = 0` and that of a node `q_1 + q_2 = 0`. The densities of all flows at a node are one
+//! expression of its pressure, so they count as one factor.
+//!
+//! `analysis` calls [`find`] after the regularity check; a group found ends the analysis with a message.
 
 use super::Alias;
 use super::draft::{DaeDraft, EquationRole, SystemRole};
@@ -12,7 +16,8 @@ use crate::flat::FlatEquation;
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use std::collections::BTreeMap;
 
-/// The first closed group: the flows of its sums, ascending.
+/// The first closed group: its flows in ascending order. `None` where there is none. The work grows almost linearly
+/// with the number of terms.
 pub(super) fn find(draft: &DaeDraft, aliases: &[Alias]) -> Option<Vec<VarId>> {
     let sums = FlowSumFinder::new(draft, aliases).collect();
     let mut uses: Vec<Vec<(u32, FlowFactor)>> = vec![Vec::new(); draft.variables.len()];
@@ -24,12 +29,14 @@ pub(super) fn find(draft: &DaeDraft, aliases: &[Alias]) -> Option<Vec<VarId>> {
     let mut groups = FlowGroups::new(sums.len());
     leave_out_ends(&sums, &mut uses, &mut groups);
     for uses in uses.iter().filter(|u| !u.is_empty()) {
+        // A flow in two sums joins them. A flow in any other number of sums opens them: it cannot cancel in pairs.
         match &uses[..] {
             // a s + b t = 0 makes the flow vanish
             [(a, s), (b, t)] if a != b => groups.join(*a, *b, &s.over(t).negative()),
             _ => uses.iter().for_each(|(row, _)| groups.open(*row)),
         }
     }
+    // A set of rows is closed if no row was opened and all factors around its circles agree.
     let closed = (0..sums.len() as u32).find(|&row| groups.is_closed(row))?;
     let root = groups.find(closed).0;
     let mut flows: Vec<VarId> = Vec::new();
@@ -43,10 +50,12 @@ pub(super) fn find(draft: &DaeDraft, aliases: &[Alias]) -> Option<Vec<VarId>> {
     Some(flows)
 }
 
-/// A sum with a flow that no other sum holds cannot take part; without it, other flows stand alone.
+/// Excludes sums that contain a flow of no other sum: that flow cannot cancel. Without such a sum, flows of it may
+/// occur in one sum only, so the exclusion is repeated until nothing changes.
 fn leave_out_ends(sums: &[FlowSum], uses: &mut [Vec<(u32, FlowFactor)>], groups: &mut FlowGroups) {
     let mut alone: Vec<usize> = (0..uses.len()).filter(|&v| uses[v].len() == 1).collect();
     while let Some(v) = alone.pop() {
+        // The flow may have been in the list more than once.
         let Some(&(row, _)) = uses[v].first() else { continue };
         groups.open(row);
         for (u, _) in &sums[row as usize] {
@@ -59,26 +68,32 @@ fn leave_out_ends(sums: &[FlowSum], uses: &mut [Vec<(u32, FlowFactor)>], groups:
     }
 }
 
-/// Unknowns with their factors.
+/// A sum of unknowns with their factors, in ascending order of unknowns.
 type FlowSum = Vec<(VarId, FlowFactor)>;
 
-/// A number times powers of expressions.
+/// A factor: a number times integer powers of expressions. Two factors are equal if number and powers agree;
+/// expressions are hash-consed, so equal expressions have equal ids.
 #[derive(Clone, Debug, PartialEq)]
 struct FlowFactor {
+    /// The numeric part.
     number: f64,
+    /// Expressions with their exponents. No exponent is 0.
     powers: BTreeMap<ExprId, i32>,
 }
 
 impl FlowFactor {
+    /// The factor 1.
     fn one() -> Self {
         FlowFactor { number: 1.0, powers: BTreeMap::new() }
     }
 
+    /// The factor with the opposite sign.
     fn negative(mut self) -> Self {
         self.number = -self.number;
         self
     }
 
+    /// The product with another factor to the power `exponent`.
     fn times(&self, other: &FlowFactor, exponent: i32) -> Self {
         let mut product = self.clone();
         product.number *= other.number.powi(exponent);
@@ -92,27 +107,33 @@ impl FlowFactor {
         product
     }
 
+    /// The quotient by another factor.
     fn over(&self, other: &FlowFactor) -> Self {
         self.times(other, -1)
     }
 
+    /// Whether it is 1 up to rounding.
     fn is_one(&self) -> bool {
         self.powers.is_empty() && (self.number - 1.0).abs() < 1e-12
     }
 }
 
-/// Looks for continuous equations that are sums of unknowns, the flows among them with factors.
+/// Finds the continuous equations that are sums of unknowns. Flows may have factors that change; other unknowns may
+/// have a sign only.
 struct FlowSumFinder<'d> {
+    /// The system after alias elimination.
     draft: &'d DaeDraft,
     /// By variable: declared `flow`, or equal to one that is.
     flow: Vec<bool>,
-    /// What a variable equals, if an equation says so.
+    /// By variable: the other side of the first equation that has the variable as one of its sides.
     definition: Vec<Option<ExprId>>,
 }
 
 impl<'d> FlowSumFinder<'d> {
+    /// Marks flows and collects definitions.
     fn new(draft: &'d DaeDraft, aliases: &[Alias]) -> Self {
         let mut flow: Vec<bool> = draft.variables.iter().map(|v| v.flow).collect();
+        // A representative of an alias set may lack the `flow` prefix although one of its aliases has it.
         for alias in aliases {
             flow[alias.target.index()] |= flow[alias.variable.index()];
         }
@@ -127,12 +148,13 @@ impl<'d> FlowSumFinder<'d> {
         FlowSumFinder { draft, flow, definition }
     }
 
+    /// The sums among the continuous equations, in their order.
     fn collect(&self) -> Vec<FlowSum> {
         let rows = self.draft.equations.iter().zip(&self.draft.kinds);
         rows.filter(|(_, kind)| **kind == EquationRole::Continuous).filter_map(|(e, _)| self.terms(e)).collect()
     }
 
-    /// The terms of `lhs - rhs`.
+    /// The terms of `lhs - rhs`. `None` where the equation is no such sum or a variable occurs twice.
     fn terms(&self, equation: &FlatEquation) -> Option<FlowSum> {
         let mut found = FlowSum::new();
         let mut stack = vec![(equation.rhs, FlowFactor::one().negative()), (equation.lhs, FlowFactor::one())];
@@ -158,7 +180,7 @@ impl<'d> FlowSumFinder<'d> {
         (distinct && !found.is_empty()).then_some(found)
     }
 
-    /// A flow, with either sign.
+    /// Whether an expression is a flow variable or its negative.
     fn is_flow(&self, e: ExprId) -> bool {
         match self.draft.exprs.node(e) {
             ExprNode::Var(v) => self.draft.role(v) == SystemRole::Continuous && self.flow[v.index()],
@@ -167,8 +189,10 @@ impl<'d> FlowSumFinder<'d> {
         }
     }
 
-    /// What a flow is multiplied with: by what it equals, so that equal ones are recognised. Nothing constant: that is
-    /// a resistance, and no balance.
+    /// The factor that an expression contributes where it multiplies a flow.
+    ///
+    /// A variable is replaced by its definition, so that equal densities are recognised. `None` for a factor that does
+    /// not vary: constant times flow is a resistance, and the equation is no balance.
     fn factor(&self, e: ExprId) -> Option<FlowFactor> {
         let exprs = &self.draft.exprs;
         let continuous = |v: &VarId| self.draft.role(*v) == SystemRole::Continuous;
@@ -181,17 +205,21 @@ impl<'d> FlowSumFinder<'d> {
     }
 }
 
-/// Rows joined by common flows, with the factor of each row relative to its root.
+/// Union-find over rows that share flows, with the factor of each row relative to its root.
 struct FlowGroups {
+    /// By row: its parent and the factor of the row relative to it.
     parent: Vec<(u32, FlowFactor)>,
+    /// By root: whether no row of the set is open.
     closed: Vec<bool>,
 }
 
 impl FlowGroups {
+    /// Every row in a closed set of its own.
     fn new(rows: usize) -> Self {
         FlowGroups { parent: (0..rows as u32).map(|r| (r, FlowFactor::one())).collect(), closed: vec![true; rows] }
     }
 
+    /// The root of a row and the factor of the row relative to the root. Shortens the path.
     fn find(&mut self, row: u32) -> (u32, FlowFactor) {
         let (mut at, mut factor) = (row, FlowFactor::one());
         while self.parent[at as usize].0 != at {
@@ -207,7 +235,8 @@ impl FlowGroups {
         (at, factor)
     }
 
-    /// Row `b` counts `ratio` times row `a`.
+    /// States that row `b` counts `ratio` times row `a`. If both are in one set already and the ratio differs from the
+    /// known one, the sums do not add up to 0, and the set is open.
     fn join(&mut self, a: u32, b: u32, ratio: &FlowFactor) {
         let ((a, s), (b, t)) = (self.find(a), self.find(b));
         let ratio = s.times(ratio, 1).over(&t);
@@ -219,11 +248,13 @@ impl FlowGroups {
         }
     }
 
+    /// Marks the set of a row as open.
     fn open(&mut self, row: u32) {
         let root = self.find(row).0;
         self.closed[root as usize] = false;
     }
 
+    /// Whether the set of a row is closed.
     fn is_closed(&mut self, row: u32) -> bool {
         let root = self.find(row).0;
         self.closed[root as usize]

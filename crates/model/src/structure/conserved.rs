@@ -1,14 +1,16 @@
 //! What the solver may integrate in place of states: mass in place of pressure.
 //!
-//! A method with several steps keeps every linear invariant of what it integrates to rounding. The mass of a closed
-//! circuit is one of the masses of its volumes, not of their pressures: with pressures as the solver's unknowns it
-//! drifts, in a stiff liquid by far more than the tolerance (C. W. Gear, SIAM J. Sci. Stat. Comput. 7 (1986) 734, on
-//! invariants under multistep methods). The library states the balance beside the equations that determine the pressure,
-//! `Connections.conserved(mass, rate, p)`: states, starts and everything that is computed from them stay as they are,
-//! and the solver adds the mass as an unknown from which the pressure follows.
+//! Enters: statements `Connections.conserved(mass, rate, p)` of the flat model and the chosen states. Leaves: one
+//! [`ConservedQuantity`] for each state that has such a statement. States, starts and everything computed from them
+//! stay as they are; the solver adds the mass as an unknown from which the pressure follows.
 //!
-//! Volumes joined without a resistance have one pressure. Their sum is conserved, and its rate is what all others bring:
-//! the sum of their flows by the equations of the connections between them.
+//! A linear multistep method keeps every linear invariant of what it integrates up to rounding. The mass of a closed
+//! circuit is a linear invariant of the masses of its volumes, not of their pressures. With pressures as unknowns it
+//! drifts, in a stiff liquid by far more than the tolerance (C. W. Gear, SIAM J. Sci. Stat. Comput. 7 (1986) 734, on
+//! invariants under multistep methods).
+//!
+//! Volumes joined without a resistance have one pressure. The sum of their masses is conserved. The rate of that sum is
+//! what all other components bring: the flows between the volumes cancel by the equations of the connections.
 
 use super::ConservedQuantity;
 use super::cancelling::{VariableSum, factor, terms};
@@ -19,10 +21,12 @@ use bramah_expr::{ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::VecDeque;
 
-/// Definitions are followed so far: from the density that a volume counts with to the law of the oil.
+/// How many definitions are followed to recognise equal densities: from the density that a volume uses to the law of
+/// the oil.
 const DEPTH: u32 = 3;
 
-/// The quantities of all states that have one.
+/// The conserved quantities of the states, in the order in which the model states them. A statement about a variable
+/// that is no state is ignored. `states` is ascending.
 pub(super) fn find(draft: &mut DaeDraft, known: &mut SignAnalysis, states: &[VarId]) -> Vec<ConservedQuantity> {
     if draft.conserved.is_empty() {
         return Vec::new();
@@ -39,11 +43,14 @@ pub(super) fn find(draft: &mut DaeDraft, known: &mut SignAnalysis, states: &[Var
             groups[place].1.push(*stated);
         }
     }
+    // Balances are needed only where several volumes share a state; to collect them costs a pass over all equations.
     let joined = groups.iter().any(|(_, members)| members.len() > 1);
     let balances = if joined { BalanceEquations::new(draft, known) } else { BalanceEquations::default() };
     groups.into_iter().filter_map(|(state, members)| conserved(draft, &balances, state, &members)).collect()
 }
 
+/// The quantity of one state, from all statements about it. Adds the variable of the solver and its equation to the
+/// draft. `None` where the common rate of several volumes cannot be found.
 fn conserved(
     draft: &mut DaeDraft,
     balances: &BalanceEquations,
@@ -70,6 +77,7 @@ fn conserved(
     Some(ConservedQuantity { state, variable, quantity, rate, equation })
 }
 
+/// The nominal value of a quantity: that of the variable, or 1.
 fn nominal(draft: &DaeDraft, quantity: ExprId) -> ExprId {
     match draft.exprs.node(quantity) {
         ExprNode::Var(v) => draft.variables[v.index()].nominal.unwrap_or(Exprs::ONE),
@@ -77,19 +85,21 @@ fn nominal(draft: &DaeDraft, quantity: ExprId) -> ExprId {
     }
 }
 
-/// Equations that are sums of variables with constant factors, those of connections among them.
+/// The equations that are sums of variables with constant factors, those of connections among them.
 #[derive(Default)]
 struct BalanceEquations {
+    /// The sums.
     rows: Vec<VariableSum>,
-    /// The rows that hold a variable.
+    /// By variable: the rows that contain it.
     users: FxHashMap<VarId, Vec<usize>>,
-    /// Whether a variable is the flow of a connector.
+    /// By variable: whether it is the flow of a connector.
     flows: Vec<bool>,
-    /// What equations `variable = expression` say.
+    /// By variable: the right side of the first continuous equation that has the variable as its left side.
     given: FxHashMap<VarId, ExprId>,
 }
 
 impl BalanceEquations {
+    /// Collects sums and definitions from the continuous equations.
     fn new(draft: &DaeDraft, known: &mut SignAnalysis) -> BalanceEquations {
         let flows = draft.variables.iter().map(|v| v.flow).collect();
         let mut balances = BalanceEquations { flows, ..BalanceEquations::default() };
@@ -110,8 +120,10 @@ impl BalanceEquations {
         balances
     }
 
-    /// The sum of the rates of volumes with one pressure, in terms of what others bring. Each rate is `rest + density*flow`
-    /// with the same density. `None` where the connections do not show that.
+    /// The sum of the rates of volumes with one pressure, in terms of the flows that others bring.
+    ///
+    /// Each rate must be `rest + density*flow`. Flows with the same density are summed and replaced by the flows that
+    /// enter the group from outside. `None` where a rate has another form or the connections do not determine the sum.
     fn joint_rate(&self, pool: &mut Exprs, rates: &[ExprId]) -> Option<ExprId> {
         let mut sum = Exprs::ZERO;
         let mut flows: Vec<(ExprId, VariableSum)> = Vec::new();
@@ -120,6 +132,7 @@ impl BalanceEquations {
             let flow = candidates.into_iter().filter(|v| self.flows[v.index()]).find_map(|v| {
                 let leaf = pool.var(v);
                 let affine = pool.linear_in(rate, leaf)?;
+                // A flow with a numeric coefficient carries no density: it is no volume flow of an oil volume.
                 (pool.as_num(affine.coefficient).is_none()).then_some((v, affine))
             });
             let (flow, affine) = flow?;
@@ -128,6 +141,7 @@ impl BalanceEquations {
                 ExprNode::Unary(UnaryFunction::Neg, density) => (density, -1.0),
                 _ => (affine.coefficient, 1.0),
             };
+            // Densities are compared by what they are computed from, since each volume has its own variable for it.
             let density = self.meaning(pool, density, DEPTH);
             match flows.iter_mut().find(|(known, _)| *known == density) {
                 Some((_, flows)) => flows.push((flow, sign)),
@@ -146,8 +160,8 @@ impl BalanceEquations {
         Some(sum)
     }
 
-    /// An expression with what the equations give in the place of its variables, through a few of them: the densities at
-    /// joined ports are variables of each volume.
+    /// An expression with variables replaced by their definitions, up to `depth` definitions deep. Densities at joined
+    /// ports are variables of each volume; this makes equal ones the same expression.
     fn meaning(&self, pool: &mut Exprs, e: ExprId, depth: u32) -> ExprId {
         let mut images: FxHashMap<ExprId, ExprId> = FxHashMap::default();
         for part in pool.reachable(&[e], |_| true) {
@@ -164,10 +178,12 @@ impl BalanceEquations {
         images[&e]
     }
 
-    /// The sum of these flows as a sum of others.
+    /// The sum of these flows as a sum of other variables. Combines balances along connections until one combination
+    /// contains all the flows. `None` where the balances do not connect them, or not with equal factors.
     fn brought(&self, flows: &[(VarId, f64)]) -> Option<VariableSum> {
         let wanted: FxHashSet<VarId> = flows.iter().map(|f| f.0).collect();
         let Some((first, rest)) = flows.split_first() else { return Some(VariableSum::new()) };
+        // A single flow is its own sum.
         if rest.is_empty() {
             return Some(vec![*first]);
         }
@@ -187,12 +203,15 @@ impl BalanceEquations {
         // each flow in its own direction
         let directed = |(v, sign): &(VarId, f64)| factor(&joint, *v) * sign;
         let one = directed(first);
+        // The combination is the sum of the flows only if each occurs with its sign times one common factor.
         let equal = flows.iter().all(|flow| (directed(flow) - one).abs() <= 1e-12 * one.abs());
         let others = joint.iter().filter(|(v, _)| !wanted.contains(v)).map(|&(v, f)| (v, -f / one));
         (equal && one != 0.0).then(|| others.collect())
     }
 
-    /// The rows that lead from a sum to one with `flow`, each with the variable that it shares with those before.
+    /// The rows that lead from a sum to a row with `flow`, each with the variable that it shares with the sum so far.
+    /// Breadth first, so the way is a shortest one. Rows in `used` and variables in `wanted` are not crossed. `None`
+    /// where no row with the flow is reachable.
     fn way(
         &self,
         from: &VariableSum,
@@ -216,6 +235,7 @@ impl BalanceEquations {
         reach(from, None, &mut came, &mut open);
         while let Some(row) = open.pop_front() {
             if self.rows[row].iter().any(|(v, _)| *v == flow) {
+                // Follow the predecessors back to the start.
                 let mut way = Vec::new();
                 let mut at = Some(row);
                 while let Some(row) = at {
@@ -232,7 +252,7 @@ impl BalanceEquations {
     }
 }
 
-/// With each variable once: what only passes from one volume to the other goes.
+/// Adds up repeated variables and drops those whose factors cancel: a flow that only passes from one volume to another.
 fn netted(mut flows: VariableSum) -> VariableSum {
     flows.sort_unstable_by_key(|f| f.0);
     flows.dedup_by(|later, kept| {
@@ -244,7 +264,7 @@ fn netted(mut flows: VariableSum) -> VariableSum {
     flows
 }
 
-/// The combination of two sums in which a variable of both does not occur.
+/// The combination `a - ratio*b` in which a variable of both does not occur. `None` where its factor in `b` is 0.
 fn without(a: &VariableSum, b: &VariableSum, shared: VarId) -> Option<VariableSum> {
     let ratio = factor(a, shared) / factor(b, shared);
     let mut all: Vec<VarId> = a.iter().chain(b).map(|t| t.0).filter(|&v| v != shared).collect();

@@ -1,15 +1,19 @@
-//! Unknowns that equal a parameter or a number, such as a temperature that nothing heats or the potential of a ground:
-//! the other equations read what they equal, so that it is known to be constant wherever that decides about the structure.
+//! Unknowns that equal a parameter or a number, such as a temperature that nothing heats or the potential of a ground.
+//!
+//! The other equations read the parameter instead. So a factor made of such unknowns is known to be constant wherever
+//! that decides about the structure. `analysis` calls [`read`] before `dependence`.
 
 use super::alias::{self, AliasEquation};
 use super::draft::{DaeDraft, EquationRole, SignedVariable, SystemRole};
 use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 
-/// Rewrites the continuous equations, but for those that say what the unknowns equal.
+/// Rewrites the continuous equations in terms of the parameters and numbers. The equations that define the unknowns
+/// stay, so that the unknowns are still computed. Initial equations are not changed.
 pub(super) fn read(draft: &mut DaeDraft) {
     let mut equal: Vec<Option<ExprId>> = vec![None; draft.variables.len()];
     let mut says = vec![false; draft.equations.len()];
     for (i, says) in says.iter_mut().enumerate() {
+        // Of two equations for one unknown only the first defines it; the second must stay visible as a contradiction.
         let found = if draft.kinds[i] == EquationRole::Continuous { constant(draft, i) } else { None };
         if let Some((v, constant)) = found.filter(|(v, _)| equal[v.index()].is_none()) {
             equal[v.index()] = Some(constant);
@@ -31,7 +35,8 @@ pub(super) fn read(draft: &mut DaeDraft) {
     }
 }
 
-/// The unknown and what it equals, where an equation says no more than that.
+/// The unknown and what it equals, where an equation states just that: `v = 0`, `v = p` or `v = -p` with a parameter
+/// `p`. `None` for all others.
 fn constant(draft: &mut DaeDraft, equation: usize) -> Option<(VarId, ExprId)> {
     let is = |v: VarId, role| draft.role(v) == role;
     match alias::simple_form(&draft.exprs, &draft.equations[equation])? {

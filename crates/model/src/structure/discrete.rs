@@ -1,4 +1,10 @@
-//! `when` clauses become discrete equations `v = if fires then value else pre(v)` and actions.
+//! Discrete equations: `when` clauses become equations and actions, and equations for discrete unknowns are recognised.
+//!
+//! A `when` clause that assigns `v` becomes `v = if fires then value else pre(v)`; `fires` is true in the event
+//! iteration in which a condition becomes true (MLS 8.3.5). Its other statements become [`EventAction`]s.
+//! [`translate_whens`] does this, [`classify`] marks equations that determine discrete unknowns,
+//! [`absorb_initial_pres`] turns initial equations for `pre(v)` into start values. `analysis` calls them in this order,
+//! with alias elimination between the first two.
 
 use super::draft::{DaeDraft, EquationRole, SystemRole};
 use super::{EventAction, EventActionKind};
@@ -10,9 +16,10 @@ use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use petgraph::unionfind::UnionFind;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Translates all `when` clauses, which leaves none.
+/// Translates all `when` clauses and empties the list of them.
 pub(super) fn translate_whens(draft: &mut DaeDraft) {
     let whens = std::mem::take(&mut draft.whens);
+    // One table for all clauses: equal conditions share a variable.
     let mut conditions = ConditionVariables::default();
     for when in &whens {
         let fires: Vec<ExprId> = when.branches.iter().map(|b| conditions.fires(draft, b, when.origin)).collect();
@@ -21,14 +28,16 @@ pub(super) fn translate_whens(draft: &mut DaeDraft) {
     }
 }
 
-/// The condition variables made so far, by expression.
+/// The Boolean variables made for `when` conditions.
 #[derive(Default)]
 struct ConditionVariables {
+    /// By condition: its variable.
     made: FxHashMap<ExprId, VarId>,
 }
 
 impl ConditionVariables {
-    /// True in the event iteration in which one of the branch's conditions becomes true.
+    /// An expression that is true in the event iteration in which one of the branch's conditions becomes true.
+    /// `initial()` is true at the start itself and needs no edge.
     fn fires(&mut self, draft: &mut DaeDraft, branch: &WhenBranch, origin: ElementOrigin) -> ExprId {
         let mut fires = Exprs::ZERO;
         for &condition in &branch.conditions {
@@ -41,7 +50,7 @@ impl ConditionVariables {
         fires
     }
 
-    /// `not initial() and c and not pre(c)`
+    /// The edge of a condition: `not initial() and c and not pre(c)`.
     fn becomes_true(&mut self, draft: &mut DaeDraft, condition: ExprId, origin: ElementOrigin) -> ExprId {
         let v = self.variable(draft, condition, origin);
         let pool = &mut draft.exprs;
@@ -51,7 +60,8 @@ impl ConditionVariables {
         pool.and(running, edge)
     }
 
-    /// The discrete variable that is the condition, or one made for it.
+    /// The discrete variable that the condition is, or one made for it with an equation `variable = condition`. `pre`
+    /// needs a variable, since it is defined for variables only.
     fn variable(&mut self, draft: &mut DaeDraft, condition: ExprId, origin: ElementOrigin) -> VarId {
         if let ExprNode::Var(v) = draft.exprs.node(condition)
             && matches!(draft.role(v), SystemRole::Discrete | SystemRole::Sample)
@@ -71,7 +81,7 @@ impl ConditionVariables {
     }
 }
 
-/// One equation for each variable that the clause assigns, in order of first appearance.
+/// Adds one equation for each variable that the clause assigns, in order of first appearance.
 fn assign_variables(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
     let mut done: Vec<VarId> = Vec::new();
     for action in when.branches.iter().flat_map(|b| &b.actions) {
@@ -86,10 +96,12 @@ fn assign_variables(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
     }
 }
 
-/// The value by the first branch that fires; a branch that does not assign the variable leaves it.
+/// The new value of a variable: that of the first branch that fires. A branch that does not assign the variable leaves
+/// it at `pre(variable)`, and so does a clause of which no branch fires.
 fn chosen_value(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId], variable: VarId) -> ExprId {
     let before = draft.exprs.pre(variable);
     let mut value = before;
+    // From the last branch to the first, so that the first one is the outermost `if` and has priority.
     for (branch, &fires) in when.branches.iter().zip(fires).rev() {
         let assigned = branch.actions.iter().rev().find_map(|action| match action {
             WhenAction::Assign { variable: v, value, .. } if *v == variable => Some(*value),
@@ -100,7 +112,8 @@ fn chosen_value(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId], varia
     value
 }
 
-/// `reinit`, `assert` and `terminate`, each happening when its branch is the first that fires.
+/// Adds the actions for `reinit`, `assert` and `terminate`. Each happens when its branch is the first that fires and
+/// the `if`s around it in the clause hold.
 fn add_actions(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
     let mut earlier = Exprs::ZERO;
     for (branch, &fires) in when.branches.iter().zip(fires) {
@@ -124,7 +137,7 @@ fn add_actions(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
     }
 }
 
-/// The variable of `v` or `pre(v)`, where it is a discrete unknown.
+/// The variable of an expression `v` or `pre(v)` where `v` is a discrete unknown; else `None`.
 fn discrete_atom(draft: &DaeDraft, e: ExprId) -> Option<VarId> {
     match draft.exprs.node(e) {
         ExprNode::Var(v) | ExprNode::Pre(v) if draft.role(v) == SystemRole::Discrete => Some(v),
@@ -132,18 +145,21 @@ fn discrete_atom(draft: &DaeDraft, e: ExprId) -> Option<VarId> {
     }
 }
 
-/// Whether both sides of an equation are such.
+/// Whether both sides of an equation are a discrete unknown or its `pre`.
 fn joins_atoms(draft: &DaeDraft, q: &FlatEquation) -> bool {
     [q.lhs, q.rhs].iter().all(|&e| discrete_atom(draft, e).is_some())
 }
 
-/// Whether nothing but parameters and values before events is read.
+/// Whether an expression with these leaves reads nothing but parameters and values of `pre`.
 fn of_parameters(draft: &DaeDraft, found: &LeafDependencies) -> bool {
     found.ders.is_empty() && !found.time && found.vars.iter().all(|&u| draft.role(u) == SystemRole::Parameter)
 }
 
-/// `a = value` among the initial equations, where the model says `a = pre(v)`, is the start of `v` (MLS 8.6).
+/// Turns initial equations `a = value` into start values of `v` where the model states `a = pre(v)`, directly or
+/// through a chain of equal variables (MLS 8.6). Equal variables and `pre`s form classes; a class that contains a `pre`
+/// and gets one known value passes that value to all its `pre`s as fixed starts.
 fn absorb_through_equals(draft: &mut DaeDraft) {
+    // A value over parameters alone, which the solver can evaluate before the start.
     let known = |draft: &DaeDraft, e: ExprId| {
         let found = draft.exprs.dependencies(&[e]);
         found.pres.is_empty() && of_parameters(draft, &found)
@@ -152,6 +168,7 @@ fn absorb_through_equals(draft: &mut DaeDraft) {
         let sides = [(q.lhs, q.rhs), (q.rhs, q.lhs)];
         sides.into_iter().find(|&(a, value)| discrete_atom(draft, a).is_some() && known(draft, value))
     };
+    // Nothing to do in most models; the rest costs a pass over all equations.
     if !draft.initial_equations.iter().any(|q| given(draft, q).is_some()) {
         return;
     }
@@ -172,6 +189,7 @@ fn absorb_through_equals(draft: &mut DaeDraft) {
     for q in std::mem::take(&mut draft.initial_equations) {
         let class = given(draft, &q).map(|(a, value)| (equals.find(a.index()), value));
         match class.and_then(|(class, value)| Some((class, value, before.get(&class)?))) {
+            // Only the first value of a class becomes a start, and never against a `fixed` start of the user.
             Some((class, value, starts))
                 if !said.contains(&class) && starts.iter().all(|v| !draft.variables[v.index()].fixed) =>
             {
@@ -184,12 +202,13 @@ fn absorb_through_equals(draft: &mut DaeDraft) {
             _ => rest.push(q),
         }
     }
-    // what joins those says no more
+    // Equations between members of such a class would only repeat what the start values now say.
     rest.retain(|q| !(joins_atoms(draft, q) && said.contains(&equals.find(q.lhs.index()))));
     draft.initial_equations = rest;
 }
 
-/// `pre(v) = value` among the initial equations fixes the start of `v`, where the value is known before the run.
+/// Turns initial equations `pre(v) = value` into start values of `v` where the value is known before the run. Where it
+/// is not, a free parameter takes the place of `pre(v)`.
 pub(super) fn absorb_initial_pres(draft: &mut DaeDraft) {
     absorb_through_equals(draft);
     let equations = std::mem::take(&mut draft.initial_equations);
@@ -207,7 +226,8 @@ pub(super) fn absorb_initial_pres(draft: &mut DaeDraft) {
     }
 }
 
-/// `pre(v) = value` with a value that is only found at the start: an unknown of it stands for `pre(v)` (MLS 8.6).
+/// An initial equation `pre(v) = value` with a value that is only found at the start (MLS 8.6). A new free parameter
+/// stands for `pre(v)` and becomes an unknown of the initial system. Other equations come back unchanged.
 fn with_value_before(draft: &mut DaeDraft, equation: FlatEquation) -> FlatEquation {
     let sides = [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)];
     let found = sides.into_iter().find_map(|(e, value)| match draft.exprs.node(e) {
@@ -226,7 +246,8 @@ fn with_value_before(draft: &mut DaeDraft, equation: FlatEquation) -> FlatEquati
     FlatEquation { lhs: draft.exprs.var(before), rhs: value, ..equation }
 }
 
-/// The variable and its start, if the equation is one of those.
+/// The variable and its start value, if the equation is `pre(v) = value` with a discrete unknown and a value known
+/// before the run. Any `pre(u)` inside the value is replaced by the start of `u`.
 fn given_pre(draft: &mut DaeDraft, equation: &FlatEquation) -> Option<(VarId, ExprId)> {
     let (v, value) = match (draft.exprs.node(equation.lhs), draft.exprs.node(equation.rhs)) {
         (ExprNode::Pre(v), _) => (v, equation.rhs),
@@ -247,10 +268,10 @@ fn given_pre(draft: &mut DaeDraft, equation: &FlatEquation) -> Option<(VarId, Ex
     Some((v, draft.exprs.substitute(value, &replacements)))
 }
 
-/// Finds the equations that determine discrete unknowns.
+/// Marks the equations that determine discrete unknowns.
 ///
 /// A lone discrete unknown on the left makes the equation a discrete one, and so does one on the right when the left
-/// holds no continuous unknown. What a `when` assigns is determined there and nowhere else.
+/// contains no continuous unknown. What a `when` assigns is determined there and nowhere else.
 pub(super) fn classify(draft: &mut DaeDraft) {
     for i in 0..draft.equations.len() {
         if draft.kinds[i] == EquationRole::Continuous && is_discrete(draft, &draft.equations[i]) {
@@ -265,25 +286,25 @@ pub(super) fn is_discrete(draft: &DaeDraft, equation: &FlatEquation) -> bool {
     if left.is_some_and(|v| may_solve(draft, v)) {
         return true;
     }
-    // A left side that is a discrete Real of a `when`: the other side tells.
+    // The left side is a variable that a `when` assigns, so the equation is discrete only if its right side is.
     if left.is_some() {
         return right.is_some() || !has_continuous(draft, equation.rhs);
     }
     right.is_some() && !has_continuous(draft, equation.lhs)
 }
 
-/// Whether an expression depends on a continuous unknown.
+/// Whether an expression depends on a continuous unknown or on a derivative.
 pub(super) fn has_continuous(draft: &DaeDraft, e: ExprId) -> bool {
     let found = draft.exprs.dependencies(&[e]);
     !found.ders.is_empty() || found.vars.iter().any(|&v| draft.role(v) == SystemRole::Continuous)
 }
 
-/// Whether equations outside `when` may determine a discrete unknown.
+/// Whether equations outside `when` may determine a discrete unknown: those that a `when` assigns are excluded.
 pub(super) fn may_solve(draft: &DaeDraft, v: VarId) -> bool {
     !draft.when_assigned[v.index()]
 }
 
-/// The discrete unknown that an expression is.
+/// The discrete unknown that an expression is; `None` for any other expression.
 pub(super) fn lone_discrete(draft: &DaeDraft, e: ExprId) -> Option<VarId> {
     match draft.exprs.node(e) {
         ExprNode::Var(v) if draft.role(v) == SystemRole::Discrete => Some(v),
@@ -291,7 +312,8 @@ pub(super) fn lone_discrete(draft: &DaeDraft, e: ExprId) -> Option<VarId> {
     }
 }
 
-/// The discrete unknowns that a row may be solved for: none for a continuous one.
+/// The discrete unknowns that a row of the incidence matrix may be solved for. None for a continuous equation; at most
+/// one for a definition, at most two for a discrete equation.
 pub(super) fn lone_unknowns(draft: &DaeDraft, equation: &FlatEquation, kind: EquationRole) -> Vec<VarId> {
     match kind {
         EquationRole::Continuous => Vec::new(),

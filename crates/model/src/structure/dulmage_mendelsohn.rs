@@ -1,11 +1,14 @@
-//! The over- and under-determined parts of a system (Dulmage and Mendelsohn, 1958).
+//! The over- and under-determined parts of a system: the coarse decomposition of A. L. Dulmage and N. S. Mendelsohn,
+//! Coverings of bipartite graphs, Canad. J. Math. 10, 1958.
 //!
-//! Both parts are the same for every maximum matching, so messages do not depend on the order of declarations.
+//! Enters: an incidence matrix and a maximum matching. Leaves: the equations that compete for too few unknowns and the
+//! unknowns that share too few equations. Both parts are the same for every maximum matching, so messages do not depend
+//! on the order of declarations. `regularity`, `analysis` and `zeros` call [`decompose`].
 
 use super::incidence::{IncidenceMatrix, NONE};
 use super::matching::Matching;
 
-/// Some equations with some unknowns.
+/// A part of the decomposition: some equations with some unknowns.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct DecompositionPart {
     /// Equations, ascending.
@@ -14,21 +17,22 @@ pub(super) struct DecompositionPart {
     pub columns: Vec<u32>,
 }
 
-/// The coarse decomposition; what is in neither part is well determined.
+/// The coarse decomposition. Equations and unknowns in neither part are well determined.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct CoarseDecomposition {
-    /// More equations than unknowns.
+    /// The overdetermined part: more equations than unknowns. Empty if all rows are matched.
     pub over: DecompositionPart,
-    /// More unknowns than equations.
+    /// The underdetermined part: more unknowns than equations. Empty if all columns are matched.
     pub under: DecompositionPart,
 }
 
-/// Splits a system with a maximum matching.
+/// Splits a system with a maximum matching, in time linear in the entries of the matrix.
 pub(super) fn decompose(incidence: &IncidenceMatrix, matching: &Matching) -> CoarseDecomposition {
     CoarseDecomposition { over: over(incidence, matching), under: under(incidence, matching) }
 }
 
-/// Everything reachable from unmatched rows: row to any of its columns, column to its matched row.
+/// Everything that alternating paths reach from unmatched rows: from a row to any of its columns, from a column to its
+/// matched row. Only entries that a row can be solved for count.
 fn over(incidence: &IncidenceMatrix, matching: &Matching) -> DecompositionPart {
     let mut row_seen = vec![false; matching.column_of.len()];
     let mut column_seen = vec![false; matching.row_of.len()];
@@ -48,7 +52,8 @@ fn over(incidence: &IncidenceMatrix, matching: &Matching) -> DecompositionPart {
     DecompositionPart { rows: marked(&row_seen), columns: marked(&column_seen) }
 }
 
-/// Everything reachable from unmatched columns: column to any of its rows, row to its matched column.
+/// Everything that alternating paths reach from unmatched columns: from a column to any of its rows, from a row to its
+/// matched column.
 fn under(incidence: &IncidenceMatrix, matching: &Matching) -> DecompositionPart {
     let mut row_seen = vec![false; matching.column_of.len()];
     let mut column_seen = vec![false; matching.row_of.len()];
@@ -69,10 +74,12 @@ fn under(incidence: &IncidenceMatrix, matching: &Matching) -> DecompositionPart 
     DecompositionPart { rows: marked(&row_seen), columns: marked(&column_seen) }
 }
 
+/// The numbers of rows or columns without a partner, ascending.
 fn unmatched(partners: &[u32]) -> Vec<u32> {
     (0..partners.len() as u32).filter(|&i| partners[i as usize] == NONE).collect()
 }
 
+/// The numbers that are marked, ascending.
 fn marked(seen: &[bool]) -> Vec<u32> {
     (0..seen.len() as u32).filter(|&i| seen[i as usize]).collect()
 }

@@ -1,9 +1,13 @@
-//! Which variables are integrated: dummy derivatives after Mattsson and Söderlind (SIAM J. Sci. Comput. 14, 1993).
+//! State selection: dummy derivatives after S. E. Mattsson and G. Söderlind, Index reduction in differential-algebraic
+//! equations using dummy derivatives, SIAM J. Sci. Comput. 14, 1993.
 //!
-//! Every differentiated equation makes one derivative superfluous; it becomes an algebraic unknown, a dummy. Level by
-//! level, from the highest derivatives down, a regular square part of the Jacobian of the differentiated equations is
-//! chosen by elimination: columns that should rather not be states are offered first, and among equals the largest
-//! pivot wins.
+//! Enters: the system after index reduction and the values of the parameters. Leaves: the derivatives that are not
+//! integrated, and the groups in which another choice may become necessary. `analysis` calls [`select`] once.
+//!
+//! Every differentiated equation makes one derivative superfluous; that derivative becomes an algebraic unknown, a
+//! dummy. The choice goes level by level, from the highest derivatives down. At each level a regular square part of the
+//! Jacobian of the differentiated equations is chosen by Gaussian elimination: columns that should rather not be states
+//! come first, and among equals the largest pivot wins.
 
 use super::draft::DaeDraft;
 use super::incidence::NONE;
@@ -15,16 +19,19 @@ use bramah_expr::eval::EvaluationCache;
 use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::FxHashMap;
 
-/// What came out.
+/// The outcome of state selection.
 #[derive(Debug, Default)]
 pub(super) struct DummyChoice {
-    /// Columns that are dummies: derivatives that are not integrated.
+    /// Columns of the reduction that are dummies: derivatives that are not integrated. Ascending.
     pub dummies: Vec<u32>,
     /// Groups among which another choice may become necessary.
     pub selections: Vec<StateSelection>,
 }
 
-/// Chooses the dummies of a reduced system.
+/// Chooses the dummies of a reduced system, as many as there are differentiated equations.
+///
+/// `parameters` has a value for each variable, NaN where it is no known parameter. `preferred` lists states that the
+/// solver asks for.
 pub(super) fn select(
     draft: &mut DaeDraft,
     reduction: &IndexReduction,
@@ -32,6 +39,7 @@ pub(super) fn select(
     preferred: &StateChoice,
 ) -> DummyChoice {
     let mut choice = DummyChoice::default();
+    // Index at most 1: all derivatives are integrated.
     if reduction.is_trivial() {
         return choice;
     }
@@ -45,22 +53,26 @@ pub(super) fn select(
     choice
 }
 
-/// The differentiated equations of one level, with the derivatives of them that may become dummies.
+/// The differentiated equations of one level, with the derivatives in them that may become dummies.
 struct DerivativeLevel {
+    /// One row for each equation.
     rows: Vec<LevelRow>,
 }
 
-/// A differentiated equation: its Jacobian entries do not change from level to level.
+/// A differentiated equation. Its Jacobian entries are the same at every level: the partial derivative of `dF/dt` by
+/// `dx/dt` is that of `F` by `x`.
 #[derive(Clone, Debug)]
 struct LevelRow {
     /// The row of the reduction at this level.
     row: u32,
-    /// Columns of this level with the partial derivatives by them.
+    /// Columns of this level with the partial derivatives by them. Entries that are 0 are left out.
     entries: Vec<(u32, ExprId)>,
 }
 
 impl DerivativeLevel {
+    /// The first level: equations that were differentiated and not differentiated again.
     fn highest(draft: &mut DaeDraft, reduction: &IndexReduction) -> DerivativeLevel {
+        // One differentiator for each column: it keeps the derivatives of subexpressions that rows share.
         let mut by_leaf: FxHashMap<u32, Differentiator> = FxHashMap::default();
         let mut rows = Vec::new();
         for row in 0..reduction.equations.len() as u32 {
@@ -69,6 +81,7 @@ impl DerivativeLevel {
             }
             let equation = draft.equations[reduction.equations[row as usize] as usize];
             let residual = draft.exprs.sub(equation.lhs, equation.rhs);
+            // A highest derivative that is the variable itself was never differentiated and cannot become a dummy.
             let columns: Vec<u32> =
                 reduction.highest(row).filter(|&c| reduction.columns[c as usize].integral != NONE).collect();
             let mut entries = Vec::with_capacity(columns.len());
@@ -83,7 +96,9 @@ impl DerivativeLevel {
         DerivativeLevel { rows }
     }
 
-    /// The level below: predecessors that are themselves derivatives, with the integrals of the dummies.
+    /// The next lower level: predecessors of the rows that are themselves derivatives, with the integrals of the
+    /// dummies as candidates. The order of a dummy is lowered by one because the lower derivative has to be chosen from
+    /// the same chain.
     fn below(&self, reduction: &IndexReduction, dummies: &[u32]) -> DerivativeLevel {
         let is_dummy: rustc_hash::FxHashSet<u32> = dummies.iter().copied().collect();
         let mut rows = Vec::new();
@@ -101,7 +116,8 @@ impl DerivativeLevel {
         DerivativeLevel { rows }
     }
 
-    /// As many dummies as rows, group by group of rows that share columns.
+    /// Chooses as many dummies as rows, group by group of rows that share columns. Appends to `selections` the groups
+    /// whose choice may have to change during the run.
     fn solve(
         &self,
         draft: &mut DaeDraft,
@@ -121,7 +137,8 @@ impl DerivativeLevel {
         all
     }
 
-    /// Rows connected by common columns.
+    /// Row numbers, grouped: two rows are in one group if they share columns, directly or through other rows. Groups
+    /// are independent of each other, which keeps the eliminations small.
     fn groups(&self) -> Vec<Vec<u32>> {
         let mut union = petgraph::unionfind::UnionFind::<u32>::new(self.rows.len());
         let mut first: FxHashMap<u32, u32> = FxHashMap::default();
@@ -144,18 +161,23 @@ impl DerivativeLevel {
     }
 }
 
-/// A column with how much its integral wants to be a state; smaller becomes a dummy first.
+/// A candidate: how much its integral should be a state, and its column. Smaller becomes a dummy first.
 type DummyRank = (StatePreference, u32);
 
-/// Larger values rather stay states.
+/// How much a variable should be a state; the fields are compared in their order. Larger values rather stay states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct StatePreference {
+    /// The attribute `stateSelect`.
     select: StateSelect,
+    /// The solver asks for it, in a [`StateChoice`].
     asked: bool,
+    /// Its start is a condition: `fixed`, or given by the model for one of its components.
     said: bool,
+    /// It has a start value.
     given: bool,
 }
 
+/// The columns of some rows with their preference, least wanted states first.
 fn candidates(
     draft: &DaeDraft,
     reduction: &IndexReduction,
@@ -168,6 +190,7 @@ fn candidates(
     let wish = |c: u32| {
         let v = integral_variable(reduction, c);
         let attributes = &draft.variables[v.index()];
+        // A choice asked for by the solver goes before everything but `never` and `always`.
         // A choice asked for by the solver goes before everything but `never` and `always`.
         let asked = preferred.preferred.contains(&v);
         let select = match attributes.state_select {
@@ -187,10 +210,12 @@ fn integral_variable(reduction: &IndexReduction, column: u32) -> VarId {
     reduction.variable(integral).expect("a derivative of a derivative has made the latter a variable")
 }
 
-/// The values of the Jacobian where the run starts; entries that vanish there by accident or cannot be evaluated are
-/// tried again at some other point if the rank is too low.
+/// The dummies of one group.
+///
+/// The Jacobian is evaluated where the run starts. Entries that vanish there by accident or cannot be evaluated may
+/// lower the rank; then the elimination is repeated at a shifted point.
 fn eliminate(draft: &DaeDraft, rows: &[&LevelRow], order: &[DummyRank], parameters: &[f64]) -> Vec<u32> {
-    // What the solver asks for fits the point that the run has come to, not the start.
+    // What the solver asks for fits the point that the run has reached, not the start.
     if !order.iter().any(|(wish, _)| wish.asked) {
         let at_start = CoefficientPoint { draft, parameters, shift: 0.0 };
         let found = pivots(rows, order, &mut at_start.values(rows));
@@ -202,15 +227,18 @@ fn eliminate(draft: &DaeDraft, rows: &[&LevelRow], order: &[DummyRank], paramete
     pivots(rows, order, &mut elsewhere.values(rows))
 }
 
-/// Where coefficients are evaluated: start values, moved by an irregular amount times `shift`.
+/// A point at which coefficients are evaluated: start values, moved by an irregular amount times `shift`.
 struct CoefficientPoint<'a> {
+    /// The system.
     draft: &'a DaeDraft,
+    /// By variable: the value of a parameter, NaN for others.
     parameters: &'a [f64],
+    /// 0 for the start itself, 1 for a generic point.
     shift: f64,
 }
 
 impl CoefficientPoint<'_> {
-    /// Dense enough for elimination: by row, column and value.
+    /// The entries of the rows as numbers: one map from columns to values for each row. What is not finite counts as 0.
     fn values(&self, rows: &[&LevelRow]) -> Vec<FxHashMap<u32, f64>> {
         let mut evaluation = EvaluationCache::default();
         let mut value = |e: ExprId| {
@@ -220,6 +248,7 @@ impl CoefficientPoint<'_> {
         rows.iter().map(|row| row.entries.iter().map(|&(c, e)| (c, value(e))).collect()).collect()
     }
 
+    /// The value of a leaf at this point. Derivatives and `pre` values are 0 at the start.
     fn leaf(&self, node: ExprNode) -> f64 {
         match node {
             ExprNode::Var(v) if !self.parameters.get(v.index()).is_none_or(|p| p.is_nan()) => {
@@ -231,6 +260,7 @@ impl CoefficientPoint<'_> {
         }
     }
 
+    /// The start value of a variable; 0 where none is given.
     fn start(&self, v: VarId) -> f64 {
         let parameter = |node: ExprNode| match node {
             ExprNode::Var(p) => self.parameters.get(p.index()).copied().unwrap_or(0.0),
@@ -241,16 +271,21 @@ impl CoefficientPoint<'_> {
     }
 }
 
-/// A number that depends on the variable without any pattern, between 0.3 and 1.3.
+/// A number between 0.3 and 1.3 that depends on the variable without a pattern: multiples of the golden ratio modulo 1.
+/// So coefficients of different variables do not cancel by accident.
 fn irregular(v: VarId) -> f64 {
     0.3 + (f64::from(v.0) * 0.618_033_988_749_895 + 0.1).fract()
 }
 
-/// Pivots below this part of the largest entry of their row count as 0.
+/// A pivot below this part of the largest entry of its row counts as 0.
 const SMALLEST_PIVOT: f64 = 1e-6;
 
-/// Columns of a regular square part, least wanted states first; among columns of equal wish the best pivot first.
+/// Gaussian elimination that returns the pivot columns, at most as many as rows.
+///
+/// `order` is worked through class by class of equal preference, least wanted states first; within a class the largest
+/// scaled pivot is taken. `values` is overwritten.
 fn pivots(rows: &[&LevelRow], order: &[DummyRank], values: &mut [FxHashMap<u32, f64>]) -> Vec<u32> {
+    // Scaling by rows makes pivots of equations in different units comparable.
     let scales: Vec<f64> = values.iter().map(|row| row.values().fold(0.0, |m: f64, v| m.max(v.abs()))).collect();
     let mut free: Vec<usize> = (0..rows.len()).collect();
     let mut by_column: FxHashMap<u32, Vec<usize>> = FxHashMap::default();
@@ -278,6 +313,7 @@ fn pivots(rows: &[&LevelRow], order: &[DummyRank], values: &mut [FxHashMap<u32, 
             } else {
                 best.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))
             };
+            // No column of this class has a usable pivot; the next class may have one.
             let Some((_, at, row)) = best else { break };
             let column = open.remove(at);
             found.push(column);
@@ -289,7 +325,8 @@ fn pivots(rows: &[&LevelRow], order: &[DummyRank], values: &mut [FxHashMap<u32, 
     found
 }
 
-/// Clears a column from all free rows with the pivot row.
+/// Subtracts multiples of the pivot row from all free rows, so that the column vanishes in them. Updates `by_column`
+/// for new entries.
 fn reduce_rows(
     values: &mut [FxHashMap<u32, f64>],
     by_column: &mut FxHashMap<u32, Vec<usize>>,
@@ -298,6 +335,7 @@ fn reduce_rows(
     is_free: &[bool],
 ) {
     let mut pivot_row: Vec<(u32, f64)> = values[pivot].iter().map(|(&c, &v)| (c, v)).collect();
+    // The order of a hash map varies; sorted entries keep the result deterministic.
     pivot_row.sort_unstable_by_key(|entry| entry.0);
     let by = values[pivot][&column];
     let mut targets: Vec<usize> = by_column[&column].iter().copied().filter(|&r| is_free[r]).collect();
@@ -311,6 +349,7 @@ fn reduce_rows(
         for &(c, v) in &pivot_row {
             let before = values[row].get(&c).copied();
             let after = before.unwrap_or(0.0) - factor * v;
+            // A difference of rounding errors would become a pivot of no meaning.
             let vanished = c == column || after.abs() <= 1e-12 * (factor * v).abs();
             values[row].insert(c, if vanished { 0.0 } else { after });
             if before.is_none() {
@@ -320,10 +359,11 @@ fn reduce_rows(
     }
 }
 
-/// Larger Jacobians are not handed on: watching them would cost more than the run.
+/// Jacobians with more entries are not handed on: to watch them would cost more than the run.
 const LARGEST_SELECTION: usize = 1_000_000;
 
-/// The record of a group whose Jacobian changes during the run and that leaves a choice.
+/// The record of a group for the solver. `None` where the Jacobian is constant, where all candidates are dummies, or
+/// where the Jacobian is too large.
 fn selection(
     draft: &DaeDraft,
     reduction: &IndexReduction,
@@ -331,6 +371,7 @@ fn selection(
     order: &[DummyRank],
     dummies: &[u32],
 ) -> Option<StateSelection> {
+    // A constant Jacobian stays regular during the run.
     let varying = rows.iter().flat_map(|row| &row.entries).any(|&(_, e)| {
         let found = draft.exprs.dependencies(&[e]);
         found.time

@@ -1,13 +1,18 @@
-//! What is computed twice: where several components join, each computes the density of the oil there. In the sorted
-//! system the later assignment takes the value of the earlier one, and so do its users, which makes more of them equal.
+//! Common subexpressions between assignments: what is computed twice.
 //!
-//! Only after sorting: merged before, the shared variable would be a worse place to cut loops.
+//! Where several components join, each computes the density of the oil there. In the sorted system the later of two
+//! equal assignments takes the value of the earlier one, and so do the users of its variable, which makes more
+//! assignments equal.
+//!
+//! Enters and leaves: the blocks of the continuous system. `analysis` calls [`share`] after sorting. Shared before
+//! sorting, the common variable would be a worse place to tear loops.
 
 use super::{BltBlock, ExplicitAssignment, Unknown};
 use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::FxHashMap;
 
-/// Lets equal assignments share their value, in the order of the blocks, and expressions that are read behind all of them.
+/// Lets equal assignments share their value, in the order of the blocks. `behind` are expressions that are read after
+/// all blocks; they are rewritten too.
 pub(super) fn share<'e>(exprs: &mut Exprs, blocks: &mut [BltBlock], behind: impl Iterator<Item = &'e mut ExprId>) {
     let mut shared = CommonExpressions { exprs, first: FxHashMap::default(), images: FxHashMap::default() };
     for block in blocks {
@@ -19,22 +24,27 @@ pub(super) fn share<'e>(exprs: &mut Exprs, blocks: &mut [BltBlock], behind: impl
                     *residual = shared.image(*residual);
                 }
             }
+            // The continuous system, the only one that this is called for, has no mixed loops.
             BltBlock::Mixed(_) => {}
         }
     }
     behind.for_each(|e| *e = shared.read(*e));
 }
 
+/// What has been computed so far.
 struct CommonExpressions<'a> {
+    /// The pool.
     exprs: &'a mut Exprs,
-    /// The variable that has a value already.
+    /// By value: the variable that has it already.
     first: FxHashMap<ExprId, VarId>,
-    /// Expressions in terms of these variables; empty until two assignments are equal. A variable is replaced from its
-    /// assignment on, and no expression before holds it.
+    /// Expressions in terms of the variables that stay. It is empty until two assignments are equal. A variable is
+    /// replaced from its second assignment on; no expression before that contains it.
     images: FxHashMap<ExprId, ExprId>,
 }
 
 impl CommonExpressions<'_> {
+    /// Rewrites one assignment and records its value. Only values worth sharing count: operations, conditions and
+    /// calls.
     fn assign(&mut self, assign: &mut ExplicitAssignment) {
         assign.value = self.image(assign.value);
         let Unknown::Var(v) = assign.unknown else { return };
@@ -56,12 +66,13 @@ impl CommonExpressions<'_> {
         }
     }
 
-    /// With variables in the place of all parts that an assignment has computed.
+    /// Rewrites an expression with variables in the place of all parts that an assignment has computed.
     fn read(&mut self, e: ExprId) -> ExprId {
         let e = self.image(e);
         let mut images: FxHashMap<ExprId, ExprId> = FxHashMap::default();
         for part in self.exprs.reachable(&[e], |_| true) {
             let image = match self.first.get(&part) {
+                // The expression itself may be the value of an assignment; it stays an expression of parts.
                 Some(&v) if part != e => self.exprs.var(v),
                 _ => {
                     let operands = self.exprs.operands(part);
@@ -74,6 +85,8 @@ impl CommonExpressions<'_> {
         images[&e]
     }
 
+    /// Rewrites an expression in terms of the variables that stay. The images of all its parts are kept for later
+    /// calls.
     fn image(&mut self, e: ExprId) -> ExprId {
         if self.images.is_empty() {
             return e;
@@ -92,6 +105,7 @@ impl CommonExpressions<'_> {
     }
 }
 
+/// A node with replaced operands; the node itself where no operand changes.
 fn image_of(exprs: &mut Exprs, e: ExprId, operands: &[(ExprId, ExprId)]) -> ExprId {
     if operands.iter().all(|(a, b)| a == b) {
         return e;

@@ -1,4 +1,9 @@
-//! Relations, `floor` and `sample` become discrete mode variables with something to watch.
+//! Event generation: relations, `floor` and `sample` become discrete mode variables (MLS 8.5).
+//!
+//! Enters: the draft with nodes `EventRel`, `EventFloor` and `Sample`. Leaves: the draft without them, with a mode
+//! variable in the place of each, an equation `mode = relation`, and a [`ZeroCrossing`] or [`SampleEvent`] that says
+//! what to watch. A mode keeps its value between events, so the equations are smooth there. `analysis` calls
+//! [`extract`] before `when` clauses are translated.
 
 use super::draft::{DaeDraft, EquationRole, SystemRole, carried};
 use super::{CrossingKind, SampleEvent, ZeroCrossing};
@@ -6,23 +11,25 @@ use crate::flat::{ElementOrigin, FlatEquation, OriginKind, ScalarType};
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction, VarId};
 use rustc_hash::FxHashMap;
 
-/// How an expression varies, by how much has to be watched.
+/// When the value of an expression may change, ordered by how much has to be watched.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum ExpressionVariability {
-    /// Never, or at events only.
+    /// Never, or at events only. A relation of such expressions needs no crossing.
     AtEvents,
-    /// With time alone, and at events.
+    /// With time alone, and at events. The time of the event may be known in advance.
     WithTime,
-    /// With anything.
+    /// With any continuous quantity. The solver must find the crossing.
     Continuously,
 }
 
-/// Replaces event-making nodes everywhere. In asserts, `when` bodies and initial equations a relation becomes the mode
-/// of the same relation elsewhere if there is one, and else is evaluated as it stands.
+/// Replaces event-generating nodes everywhere. In asserts, `when` bodies and initial equations a relation makes no
+/// event of its own: it becomes the mode of the same relation elsewhere if there is one, and else is evaluated as it
+/// stands.
 pub(super) fn extract(draft: &mut DaeDraft) {
     let origins = eventful_origins(draft);
     let mut extraction = CrossingExtraction { map: Vec::with_capacity(origins.len()), ..CrossingExtraction::default() };
     let live = draft.live_nodes();
+    // Ids ascend from arguments to nodes, so the images of all arguments are known.
     for (i, origin) in origins.iter().enumerate() {
         if !live[i] {
             extraction.map.push(ExprId(i as u32));
@@ -41,7 +48,8 @@ pub(super) fn extract(draft: &mut DaeDraft) {
     draft.map_expressions(&extraction.map);
 }
 
-/// For every node where an event may come from: the origin of the first equation or condition that holds it.
+/// By node: the origin of the first equation or `when` condition that contains it. `None` for nodes that occur nowhere
+/// else: they make no events.
 fn eventful_origins(draft: &DaeDraft) -> Vec<Option<ElementOrigin>> {
     let mut origins = vec![None; draft.exprs.len()];
     let mut mark = |roots: &[ExprId], origin: ElementOrigin| {
@@ -65,30 +73,38 @@ fn eventful_origins(draft: &DaeDraft) -> Vec<Option<ElementOrigin>> {
     origins
 }
 
+/// The images made so far. The lists are indexed by node.
 #[derive(Default)]
 struct CrossingExtraction {
+    /// The image of each node.
     map: Vec<ExprId>,
+    /// When each node may change.
     varies: Vec<ExpressionVariability>,
-    /// Whether an expression holds a root.
+    /// Whether a node contains a root of something that varies.
     rooted: Vec<bool>,
-    /// Modes with the relations they are of.
+    /// Mode variables with the relations that they stand for.
     watched: FxHashMap<ExprId, ExprId>,
 }
 
 impl CrossingExtraction {
+    /// The image of one node. `origin` is the place from which it makes events, if any.
     fn image(&mut self, draft: &mut DaeDraft, e: ExprId, origin: Option<ElementOrigin>) -> ExprId {
         match draft.exprs.node(e) {
             ExprNode::EventRel(rel, a, b) => self.relation(draft, (rel, a, b), origin),
             ExprNode::EventFloor(a) => self.floor(draft, a, origin),
             ExprNode::Sample(start, interval) => match origin {
                 Some(origin) => self.sampling(draft, start, interval, origin),
+                // A `sample` outside of equations and conditions never fires.
                 None => Exprs::ZERO,
             },
             ExprNode::If(c, a, b) if self.rooted[a.index()] || self.rooted[b.index()] => {
                 let [c, a, b] = [c, a, b].map(|e| self.map[e.index()]);
+                // The condition as written, with relations instead of modes: it is evaluated where the integrator tries
+                // a step.
                 let modes = draft.exprs.reachable(&[c], |_| true).into_iter();
                 let modes: Vec<(ExprId, ExprId)> = modes.filter_map(|e| Some((e, *self.watched.get(&e)?))).collect();
                 let holds = draft.exprs.substitute(c, &modes);
+                // The condition has no modes, so no event is delayed and the branches need no continuation.
                 if holds == c {
                     return draft.exprs.if_(c, a, b);
                 }
@@ -100,6 +116,7 @@ impl CrossingExtraction {
         }
     }
 
+    /// The mode of a relation, or the relation itself where it needs none.
     fn relation(
         &mut self,
         draft: &mut DaeDraft,
@@ -119,6 +136,7 @@ impl CrossingExtraction {
             }
             None => (CrossingKind::Relation(rel, left, right), draft.exprs.rel(rel, left, right)),
         };
+        // With constant sides the relation folds to a number.
         match draft.exprs.node(value) {
             ExprNode::Num(_) => value,
             _ => {
@@ -129,6 +147,7 @@ impl CrossingExtraction {
         }
     }
 
+    /// The mode of a `floor`, or the `floor` itself where its argument changes at events only.
     fn floor(&self, draft: &mut DaeDraft, a: ExprId, origin: Option<ElementOrigin>) -> ExprId {
         let argument = self.map[a.index()];
         let value = draft.exprs.floor(argument);
@@ -140,6 +159,7 @@ impl CrossingExtraction {
         }
     }
 
+    /// The mode of a `sample`. The solver sets it; it has no equation.
     fn sampling(&self, draft: &mut DaeDraft, start: ExprId, interval: ExprId, origin: ElementOrigin) -> ExprId {
         let (start, interval) = (self.map[start.index()], self.map[interval.index()]);
         let origin = ElementOrigin { kind: OriginKind::Relation, ..origin };
@@ -150,6 +170,7 @@ impl CrossingExtraction {
         draft.exprs.var(mode)
     }
 
+    /// When a node may change, from its own kind and that of its arguments.
     fn variation(&self, draft: &DaeDraft, e: ExprId) -> ExpressionVariability {
         match draft.exprs.node(e) {
             ExprNode::Time => ExpressionVariability::WithTime,
@@ -169,6 +190,7 @@ impl CrossingExtraction {
     }
 }
 
+/// When a variable may change. A Real input may be given as a continuous signal.
 fn variable_variation(draft: &DaeDraft, v: VarId) -> ExpressionVariability {
     match draft.role(v) {
         SystemRole::Continuous => ExpressionVariability::Continuously,
@@ -177,7 +199,7 @@ fn variable_variation(draft: &DaeDraft, v: VarId) -> ExpressionVariability {
     }
 }
 
-/// `left rel right` as `time rel at`, if it is affine in time with a numeric factor.
+/// Writes `left rel right` as `time rel at`. `None` unless the relation is affine in time with a numeric factor.
 fn time_event(draft: &mut DaeDraft, rel: RelationalOp, left: ExprId, right: ExprId) -> Option<(RelationalOp, ExprId)> {
     let pool = &mut draft.exprs;
     let time = pool.time();
@@ -186,10 +208,11 @@ fn time_event(draft: &mut DaeDraft, rel: RelationalOp, left: ExprId, right: Expr
     }
     let (at, coefficient) = pool.solve_for(left, right, time)?;
     let factor = pool.as_num(coefficient)?;
+    // A negative factor turns the relation round.
     Some((if factor > 0.0 { rel } else { mirrored(rel) }, at))
 }
 
-/// The relation with its sides exchanged.
+/// The relation that holds with its sides exchanged.
 fn mirrored(rel: RelationalOp) -> RelationalOp {
     match rel {
         RelationalOp::Lt => RelationalOp::Gt,
@@ -200,7 +223,8 @@ fn mirrored(rel: RelationalOp) -> RelationalOp {
     }
 }
 
-/// The argument of a root that changes.
+/// The argument of a square root, or of a power with a positive exponent that is not whole, unless it is a number.
+/// `None` for other nodes.
 fn root(pool: &Exprs, e: ExprId) -> Option<ExprId> {
     let argument = match pool.node(e) {
         ExprNode::Unary(UnaryFunction::Sqrt, u) => u,
@@ -210,9 +234,11 @@ fn root(pool: &Exprs, e: ExprId) -> Option<ExprId> {
     pool.as_num(argument).is_none().then_some(argument)
 }
 
-/// A branch of an `if` as it goes on where its condition does not hold any more, until the event is found a little later: a
-/// root whose argument the condition keeps from falling below 0, as in `if dp > 0 then sqrt(dp) else 0`, goes on below 0 with
-/// the other sign, so that the solver finds the crossing.
+/// The continuation of a branch of an `if` past its event.
+///
+/// Between the moment at which the condition fails and the event, which the solver finds a little later, the branch is
+/// still evaluated. In `if dp > 0 then sqrt(dp) else 0` the argument becomes negative there. Such a root continues with
+/// the opposite sign, `-sqrt(-dp)`, where the condition does not hold, so that the solver finds the crossing.
 fn beyond(pool: &mut Exprs, branch: ExprId, holds: ExprId) -> ExprId {
     let mut replaced = Vec::new();
     for e in pool.reachable(&[branch], |_| true) {
@@ -225,12 +251,13 @@ fn beyond(pool: &mut Exprs, branch: ExprId, holds: ExprId) -> ExprId {
         let below = pool.neg(below);
         let negative = pool.rel(RelationalOp::Lt, argument, Exprs::ZERO);
         let other = pool.if_(negative, below, e);
+        // Where the condition holds, the root stays as written.
         replaced.push((e, pool.if_(holds, e, other)));
     }
     if replaced.is_empty() { branch } else { pool.substitute(branch, &replaced) }
 }
 
-/// A mode variable with its equation and its crossing.
+/// Makes a mode variable with its equation and its crossing. Returns the mode as an expression.
 fn watched(draft: &mut DaeDraft, kind: CrossingKind, value: ExprId, ty: ScalarType, origin: ElementOrigin) -> ExprId {
     let origin = ElementOrigin { kind: OriginKind::Relation, ..origin };
     let name = draft.text(value);

@@ -1,4 +1,6 @@
-//! Bodies that cannot move: their position is a constant, and twice differentiated it meets their acceleration.
+//! Bodies that cannot move: their position is a constant, and its second derivative meets their acceleration.
+//!
+//! Enters: the system after index reduction. Leaves: notes. `analysis` calls [`find`] once.
 
 use super::draft::{DaeDraft, SystemRole};
 use super::pantelides::IndexReduction;
@@ -7,7 +9,8 @@ use crate::flat::FlatEquation;
 use bramah_expr::VarId;
 use bramah_syntax::diag::Diagnostic;
 
-/// A note for each position that parameters alone fix. A locked rotor is a model that one may want: it is no warning.
+/// A note for each position that parameters alone fix. It is a note and no warning, because a locked rotor may be
+/// intended.
 pub(super) fn find(draft: &DaeDraft, reduction: &IndexReduction, aliases: &[Alias]) -> Vec<Diagnostic> {
     let held = reduction.constraints_twice_differentiated().filter_map(|(v, row)| {
         let equation = draft.equations[row];
@@ -18,14 +21,14 @@ pub(super) fn find(draft: &DaeDraft, reduction: &IndexReduction, aliases: &[Alia
     held.collect()
 }
 
-/// Whether nothing else in an equation changes.
+/// Whether an equation contains nothing but the variable `v` and parameters.
 fn is_constant(draft: &DaeDraft, equation: &FlatEquation, v: VarId) -> bool {
     let found = draft.exprs.dependencies(&[equation.lhs, equation.rhs]);
     let known = |other: &VarId| *other == v || draft.role(*other) == SystemRole::Parameter;
     !found.time && found.ders.is_empty() && found.pres.is_empty() && found.vars.iter().all(known)
 }
 
-/// The names of a position outside of connectors.
+/// The names of a position outside of connectors, ascending: `v` and its aliases.
 fn bodies(draft: &DaeDraft, aliases: &[Alias], v: VarId) -> Vec<VarId> {
     let others = aliases.iter().filter(|a| a.target == v).map(|a| a.variable);
     let own = |v: &VarId| !places::is_connector(&draft.variables, draft.variables[v.index()].origin.instance);

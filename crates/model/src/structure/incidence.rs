@@ -1,29 +1,37 @@
-//! Which unknowns occur in which equations: the bipartite graph that all structural algorithms walk.
+//! The incidence matrix: which unknowns occur in which equations. It is the bipartite graph on which matching, sorting
+//! and index reduction work.
+//!
+//! [`IncidenceMatrix`] stores it by rows. [`IncidenceScanner`] makes the rows from expressions and separates the
+//! unknowns that an equation can be solved for from those that it only depends on.
 
 use bramah_expr::visit::NodeTraversal;
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction};
 
-/// "None" for rows and columns.
+/// The number that means "no row" or "no column".
 pub(super) const NONE: u32 = u32::MAX;
 
-/// Rows are equations, columns are unknowns, both numbered from 0; rows can be appended.
+/// A sparse matrix without values. Rows are equations, columns are unknowns, both numbered from 0. Rows can be
+/// appended.
 ///
-/// The columns of a row come in two groups: those that the equation can be solved for in principle, then those that
-/// only matter to it (they stand inside a relation, say).
+/// The columns of a row come in two groups: those that the equation can be solved for in principle, then those that it
+/// only depends on, such as unknowns inside a relation.
 #[derive(Clone, Debug, Default)]
 pub(super) struct IncidenceMatrix {
+    /// By row: where its columns begin in `columns`.
     starts: Vec<u32>,
+    /// By row: where its second group begins in `columns`.
     splits: Vec<u32>,
+    /// The columns of all rows, one row after the other. No column occurs twice in a row.
     columns: Vec<u32>,
 }
 
 impl IncidenceMatrix {
-    /// Number of rows.
+    /// The number of rows.
     pub fn rows(&self) -> usize {
         self.splits.len()
     }
 
-    /// Appends a row.
+    /// Appends a row with its two groups of columns.
     pub fn push(&mut self, solvable: &[u32], dependent: &[u32]) {
         self.starts.push(self.columns.len() as u32);
         self.columns.extend_from_slice(solvable);
@@ -36,16 +44,18 @@ impl IncidenceMatrix {
         &self.columns[self.starts[row as usize] as usize..self.splits[row as usize] as usize]
     }
 
-    /// All columns that the row contains.
+    /// All columns of the row, solvable ones first.
     pub fn all(&self, row: u32) -> &[u32] {
         &self.columns[self.starts[row as usize] as usize..self.end(row)]
     }
 
+    /// Where the columns of a row end.
     fn end(&self, row: u32) -> usize {
         self.starts.get(row as usize + 1).map_or(self.columns.len(), |&s| s as usize)
     }
 
-    /// The rows of each column, over the solvable entries: `(starts, rows)` with `starts.len() == columns + 1`.
+    /// The solvable entries by columns: `(starts, rows)` with `starts.len() == columns + 1`. The rows of column `c` are
+    /// `rows[starts[c]..starts[c + 1]]`, ascending.
     pub fn transposed(&self, columns: usize) -> (Vec<u32>, Vec<u32>) {
         let mut starts = vec![0_u32; columns + 1];
         for row in 0..self.rows() as u32 {
@@ -68,19 +78,24 @@ impl IncidenceMatrix {
     }
 }
 
-/// Collects the columns of expressions into an [`IncidenceMatrix`], telling apart what an equation can be solved for.
+/// Collects the columns of expressions into an [`IncidenceMatrix`]. It is work space that is reused from row to row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct IncidenceScanner {
+    /// Visits each node once.
     walk: NodeTraversal,
+    /// Columns found that the row can be solved for, in the order in which they were met.
     solvable: Vec<u32>,
+    /// Columns found that the row only depends on.
     dependent: Vec<u32>,
+    /// By column: the stamp of the last scan that met it. It replaces a set that would have to be cleared for each row.
     mark: Vec<u32>,
+    /// The stamp of the current scan.
     stamp: u32,
 }
 
 impl IncidenceScanner {
-    /// Appends the row of the continuous equation `lhs = rhs`. `column` maps a leaf to a column or to nothing;
-    /// `matchable` says which columns a continuous equation can be solved for.
+    /// Appends the row of the continuous equation `lhs = rhs`. `column` maps a leaf to its column, or to `None` if it
+    /// is no unknown; `matchable` says which columns a continuous equation can be solved for.
     pub fn push(
         &mut self,
         pool: &Exprs,
@@ -95,7 +110,8 @@ impl IncidenceScanner {
         out.push(&self.solvable, &self.dependent);
     }
 
-    /// Appends the row of a discrete equation, which can be solved for the given columns only.
+    /// Appends the row of a discrete equation. It can be solved for the columns `lone` only, because it is an
+    /// assignment.
     pub fn push_discrete(
         &mut self,
         pool: &Exprs,
@@ -110,6 +126,7 @@ impl IncidenceScanner {
         out.push(lone, &self.solvable);
     }
 
+    /// Collects the columns of both sides in `solvable` and `dependent`.
     fn scan(&mut self, pool: &Exprs, sides: [ExprId; 2], column: impl Fn(ExprNode) -> Option<u32>) {
         self.solvable.clear();
         self.dependent.clear();
@@ -124,6 +141,7 @@ impl IncidenceScanner {
             if let ExprNode::If(c, ..) = node {
                 conditions.push(c);
             }
+            // Below a piecewise constant node an equation cannot be solved, so the walk does not enter it here.
             let blunt = is_piecewise_constant(node);
             cut |= blunt;
             !blunt
@@ -133,7 +151,8 @@ impl IncidenceScanner {
         }
     }
 
-    /// With piecewise constant parts: solvable is what occurs outside them, the rest depends only.
+    /// Scans an equation with conditions or piecewise constant parts: the columns outside them are solvable, the others
+    /// are dependent.
     fn scan_rest(
         &mut self,
         pool: &Exprs,
@@ -141,7 +160,9 @@ impl IncidenceScanner {
         column: impl Fn(ExprNode) -> Option<u32>,
         conditions: &[ExprId],
     ) {
+        // `scan` has marked columns with its own stamp, so this pass needs a fresh one.
         let (mark, stamp) = (&mut self.mark, self.stamp + 1);
+        // The stamp after it stays unused.
         self.stamp += 2;
         let found = std::mem::take(&mut self.solvable);
         let smooth = if conditions.is_empty() { found } else { smooth_columns(pool, sides, &column) };
@@ -158,7 +179,8 @@ impl IncidenceScanner {
     }
 }
 
-/// Columns outside conditions and other piecewise constant parts.
+/// The columns outside of conditions and of other piecewise constant parts, in the order in which they are met. A
+/// column may occur more than once.
 fn smooth_columns(pool: &Exprs, sides: [ExprId; 2], column: &impl Fn(ExprNode) -> Option<u32>) -> Vec<u32> {
     let mut seen = rustc_hash::FxHashSet::default();
     let mut stack = vec![sides[1], sides[0]];
@@ -170,6 +192,7 @@ fn smooth_columns(pool: &Exprs, sides: [ExprId; 2], column: &impl Fn(ExprNode) -
         }
         found.extend(column(node));
         match node {
+            // The branches count, the condition does not: in it the equation cannot be solved for anything.
             ExprNode::If(_, a, b) => stack.extend([b, a]),
             _ => stack.extend(pool.operands(e).as_slice().iter().rev()),
         }
@@ -177,6 +200,7 @@ fn smooth_columns(pool: &Exprs, sides: [ExprId; 2], column: &impl Fn(ExprNode) -
     found
 }
 
+/// Appends a column to `out` unless the current scan has met it.
 fn note(mark: &mut Vec<u32>, stamp: u32, column: u32, out: &mut Vec<u32>) {
     let index = column as usize;
     if mark.len() <= index {
@@ -188,7 +212,7 @@ fn note(mark: &mut Vec<u32>, stamp: u32, column: u32, out: &mut Vec<u32>) {
     }
 }
 
-/// Its derivative by any argument is 0 wherever it exists.
+/// Whether the derivative of a node by any argument is 0 wherever it exists.
 fn is_piecewise_constant(node: ExprNode) -> bool {
     matches!(
         node,

@@ -1,8 +1,13 @@
-//! The system that is solved once at the start: all equations, initial equations and fixed start values.
+//! The initial system, solved once at the start: all equations, initial equations and fixed start values (MLS 8.6).
 //!
-//! Rows are matched in order of their weight: the equations of the model, initial equations, fixed starts of states,
-//! other fixed starts, `v = pre(v)` of discrete variables that nothing else determines, and at last start values that
-//! are chosen here to make the system determined.
+//! Enters: the running system with its matching, the states, and the initial equations of the draft. Leaves: a matched
+//! [`EquationSystem`] whose unknowns are those of the run, the states and the free parameters. `analysis` calls
+//! [`assemble`] and then sorts the system.
+//!
+//! Rows are matched in the order of their weight, and a later row never displaces an earlier one: the equations of the
+//! model, initial equations, fixed starts of states, other fixed starts, `v = pre(v)` of discrete variables that
+//! nothing else determines, and at last start values that are chosen here to make the system determined. A row that
+//! finds no partner is redundant, contradicting, or a condition that is checked after the system is solved.
 
 use super::draft::{DaeDraft, EquationRole, SystemRole};
 use super::incidence::{IncidenceMatrix, IncidenceScanner, NONE};
@@ -15,36 +20,39 @@ use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::diag::Diagnostic;
 use rustc_hash::FxHashMap;
 
-/// The matched system and what was decided on the way.
+/// The matched system and the decisions behind it.
 pub(super) struct InitialSystem {
+    /// The matched rows with their unknowns, ready to be sorted.
     pub system: EquationSystem,
-    /// Variables whose start values were chosen.
+    /// Variables whose start values were chosen although they are not `fixed`.
     pub chosen: Vec<VarId>,
-    /// Fixed starts that hold only if they are consistent: expressions that must vanish, with their equations.
+    /// Residuals of conditions that determine nothing but must hold, each with its equation.
     pub checks: Vec<(ExprId, u32)>,
+    /// The first contradiction, or else a note about chosen starts.
     pub diagnostics: Vec<Diagnostic>,
 }
 
-/// What an initial equation says that determines nothing.
+/// How an initial equation that determines nothing relates to the others.
 enum InitialRedundancy {
-    /// The same as another.
+    /// It repeats another initial equation or an equation of the model.
     Said,
-    /// What may follow from the equations of the model: checked at the start.
+    /// It may follow from the equations of the model, so its residual is checked at the start.
     Follows,
-    /// Something else than another condition.
+    /// It competes with another initial condition for the same unknowns.
     Contradicts,
 }
 
-/// What the other systems have found out.
+/// What the earlier steps have found.
 pub(super) struct InitializationContext<'a> {
-    /// The event system: all equations with their unknowns.
+    /// All equations of the run, discrete ones included, with their unknowns and matching.
     pub running: &'a EquationSystem,
+    /// The states, ascending.
     pub states: &'a [VarId],
-    /// Differentiated variables that are not states: their fixed starts may be redundant.
+    /// Differentiated variables that are no states, ascending. Their fixed starts may be redundant.
     pub demoted: &'a [VarId],
 }
 
-/// Sets up and matches the initial system.
+/// Sets up and matches the initial system. Adds initial equations and starts to the equations of the draft.
 pub(super) fn assemble(draft: &mut DaeDraft, known: &mut SignAnalysis, model: &InitializationContext) -> InitialSystem {
     let mut assembly = InitialAssembly::new(draft, model);
     assembly.model_rows(draft, model);
@@ -56,26 +64,41 @@ pub(super) fn assemble(draft: &mut DaeDraft, known: &mut SignAnalysis, model: &I
     assembly.finish(draft)
 }
 
+/// The initial system while it grows.
 struct InitialAssembly {
+    /// The unknowns: those of the run, then states, then free parameters.
     columns: Vec<Unknown>,
+    /// Where unknowns are among the columns.
     places: UnknownColumns,
+    /// By column: whether it is a discrete unknown.
     discrete_columns: Vec<bool>,
+    /// The rows so far, matched or not.
     rows: Vec<SystemRow>,
-    /// How many of them are the model's own equations, which come first.
+    /// How many of the rows are equations of the model; these come first.
     model_rows: u32,
+    /// The columns of each row.
     incidence: IncidenceMatrix,
+    /// The partners so far.
     matching: Matching,
+    /// Searches for augmenting paths. After a failed search it holds the competing rows.
     augmenter: PathAugmenter,
+    /// Work space for `incidence`.
     scanner: IncidenceScanner,
-    /// Where `initial()` is 1 and `pre` of a variable that keeps its value is the variable.
+    /// By expression: its image at the start, where `initial()` is 1 and `pre` of a variable that keeps its value is
+    /// the variable.
     map: Vec<ExprId>,
+    /// By variable: whether it is a discrete unknown whose equation is `v = pre(v)` at the start.
     keeps: Vec<bool>,
+    /// See [`InitialSystem::chosen`].
     chosen: Vec<VarId>,
+    /// See [`InitialSystem::checks`].
     checks: Vec<(ExprId, u32)>,
+    /// See [`InitialSystem::diagnostics`].
     diagnostics: Vec<Diagnostic>,
 }
 
 impl InitialAssembly {
+    /// No rows yet; all columns unmatched.
     fn new(draft: &mut DaeDraft, model: &InitializationContext) -> Self {
         let mut columns: Vec<Unknown> = model.running.columns.clone();
         columns.extend(model.states.iter().map(|&v| Unknown::Var(v)));
@@ -103,12 +126,14 @@ impl InitialAssembly {
         }
     }
 
+    /// An equation as it reads at the start.
     fn mapped(&self, equation: FlatEquation) -> FlatEquation {
         let image = |e: ExprId| self.map.get(e.index()).copied().unwrap_or(e);
         FlatEquation { lhs: image(equation.lhs), rhs: image(equation.rhs), origin: equation.origin }
     }
 
-    /// Appends a row without matching it.
+    /// Appends a row without matching it, and returns its number. `index` is its equation in the draft. `lone` lists
+    /// the columns of a discrete row; `None` makes it a continuous one.
     fn push(&mut self, draft: &DaeDraft, equation: FlatEquation, index: u32, lone: Option<Vec<u32>>) -> u32 {
         let places = &self.places;
         let column = |node: ExprNode| places.of_node(node);
@@ -126,22 +151,27 @@ impl InitialAssembly {
         self.rows.len() as u32 - 1
     }
 
+    /// Matches a row if an augmenting path exists. False if not.
     fn augment(&mut self, row: u32) -> bool {
         self.augmenter.augment(&self.incidence, &mut self.matching, row, |_, _, _| true)
     }
 
-    /// The equations of the model, matched as they are when the model runs wherever possible.
+    /// Appends the equations of the model. They keep their partners of the running system where that is possible:
+    /// states and free parameters then remain for the initial conditions.
     fn model_rows(&mut self, draft: &DaeDraft, model: &InitializationContext) {
         let running = model.running;
         let mut open = Vec::new();
         for (i, row) in running.rows.iter().enumerate() {
             let partner = running.matching.column_of[i];
+            // `discrete_defaults` adds `v = pre(v)` at its own, lower weight.
             if row.discrete && self.is_default(row, running.columns[partner as usize]) {
                 continue;
             }
             let lone = row.discrete.then(|| vec![partner]);
             let made = self.push(draft, self.mapped(row.equation), row.index, lone);
             if self.incidence.solvable(made).contains(&partner) {
+                // At the start an expression may have lost the partner, for instance where `initial()` selects another
+                // branch.
                 self.matching.join(made, partner);
             } else {
                 open.push(made);
@@ -155,11 +185,13 @@ impl InitialAssembly {
         }
     }
 
-    /// A discrete equation that says `v = pre(v)` at the start.
+    /// Whether a row is a discrete equation that says `v = pre(v)` at the start.
     fn is_default(&self, row: &SystemRow, unknown: Unknown) -> bool {
         matches!(unknown, Unknown::Var(v) if self.keeps[v.index()]) && row.discrete
     }
 
+    /// Appends the initial equations. One that determines nothing is dropped, checked or reported, as
+    /// [`Self::redundancy`] says.
     fn initial_equations(&mut self, draft: &mut DaeDraft) {
         for equation in draft.initial_equations.clone() {
             if self.takes_left_limit(draft, &equation) {
@@ -182,8 +214,9 @@ impl InitialAssembly {
         draft.kinds.resize(draft.equations.len(), EquationRole::Continuous);
     }
 
-    /// `pre(v) = value` of a discrete unknown that gets a value of its own at the start says what was before: its start
-    /// value, where that is known.
+    /// Whether an initial equation states the value of a discrete unknown before the start: `pre(v) = value` where `v`
+    /// gets a value of its own at the start. The value becomes the start value of `v`. False for other equations, which
+    /// stay.
     fn takes_left_limit(&self, draft: &mut DaeDraft, equation: &FlatEquation) -> bool {
         let pre = |e: ExprId| match draft.exprs.node(e) {
             ExprNode::Pre(v) if !self.keeps[v.index()] => Some(v),
@@ -199,7 +232,8 @@ impl InitialAssembly {
         if !known || !draft.exprs.derivatives(value).is_empty() {
             return false;
         }
-        // what reads the time is no start value, and nothing but the equation of `v` itself asks for it
+        // A value that reads the time is no start value. It is dropped: only the equation of `v` itself could ask for
+        // it.
         let time = draft.exprs.time();
         if !draft.exprs.contains(value, time) {
             draft.variables[v.index()].start = Some(value);
@@ -207,10 +241,11 @@ impl InitialAssembly {
         true
     }
 
-    /// What an initial equation that determines nothing says beside those that determine the same.
+    /// How a row that found no partner relates to the rows that compete with it. The last search of the augmenter must
+    /// have been for this row.
     fn redundancy(&self, row: u32) -> InitialRedundancy {
         let own = self.rows[row as usize].equation;
-        // one that has no unknowns may hold as well
+        // A row without unknowns sees only itself. It may hold as a matter of values, so it is checked.
         let mut follows = self.augmenter.rows_seen.iter().all(|&seen| seen == row);
         for &seen in self.augmenter.rows_seen.iter().filter(|&&seen| seen != row) {
             let other = self.rows[seen as usize].equation;
@@ -223,7 +258,7 @@ impl InitialAssembly {
         if follows { InitialRedundancy::Follows } else { InitialRedundancy::Contradicts }
     }
 
-    /// The discrete unknowns an initial equation can be solved for, if it is a discrete one.
+    /// The columns that an initial equation can be solved for if it is a discrete one; `None` if it is continuous.
     fn lone_columns(&self, draft: &DaeDraft, equation: &FlatEquation) -> Option<Vec<u32>> {
         let lone = [equation.lhs, equation.rhs].map(|e| discrete::lone_discrete(draft, e));
         let left_is_continuous = lone[0].is_none() && discrete::has_continuous(draft, equation.lhs);
@@ -231,7 +266,7 @@ impl InitialAssembly {
         (!found.is_empty() && !left_is_continuous).then_some(found)
     }
 
-    /// `x = start` for fixed continuous unknowns, states first.
+    /// Appends `x = start` for fixed continuous unknowns, states first.
     fn fixed_starts(&mut self, draft: &mut DaeDraft, model: &InitializationContext) {
         let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
         let fixed = draft.with_role(SystemRole::Continuous).into_iter().filter(|v| draft.variables[v.index()].fixed);
@@ -241,6 +276,7 @@ impl InitialAssembly {
             if self.augment(row) {
                 continue;
             }
+            // The constraint that demoted the variable may already determine it consistently.
             if model.demoted.binary_search(&v).is_ok() {
                 self.check(draft, row);
             } else {
@@ -249,6 +285,8 @@ impl InitialAssembly {
         }
     }
 
+    /// Appends the row `v = start` without matching it. Without a start value it is the default of the type. Returns
+    /// the number of the row.
     fn push_start(&mut self, draft: &mut DaeDraft, v: VarId) -> u32 {
         let variable = &draft.variables[v.index()];
         let origin = ElementOrigin { kind: OriginKind::Start, ..variable.origin };
@@ -263,7 +301,8 @@ impl InitialAssembly {
         self.push(draft, equation, draft.equations.len() as u32 - 1, None)
     }
 
-    /// `v = pre(v)` for discrete unknowns that no initial equation determines.
+    /// Appends `v = pre(v)` for discrete unknowns whose equation says nothing else at the start. A contradiction is
+    /// reported only if the start of the variable is `fixed`.
     fn discrete_defaults(&mut self, draft: &mut DaeDraft) {
         for v in draft.with_role(SystemRole::Discrete) {
             if !self.keeps[v.index()] {
@@ -281,7 +320,8 @@ impl InitialAssembly {
         }
     }
 
-    /// Starts of states, best first, then of other unknowns, until everything is determined.
+    /// Fixes start values until everything is determined: those of states first, best candidates first, then those of
+    /// other unknowns. Reports the unknowns that stay undetermined.
     fn choose_starts(&mut self, draft: &mut DaeDraft, known: &mut SignAnalysis, model: &InitializationContext) {
         let mut missing = self.matching.row_of.iter().filter(|&&r| r == NONE).count();
         if missing == 0 {
@@ -295,6 +335,8 @@ impl InitialAssembly {
                 missing -= 1;
             }
             if missing == 0 {
+                // A chosen start may follow from the others by the values of coefficients. It is taken back, and others
+                // are tried.
                 missing = self.give_up_what_follows(draft, known, first);
             }
             if missing == 0 {
@@ -308,7 +350,8 @@ impl InitialAssembly {
         }
     }
 
-    /// Takes back chosen starts, in rows from `first` on, of what the other rows determine beyond their structure; how many.
+    /// Takes back chosen starts, in rows from `first` on, that follow linearly from the other rows although the
+    /// structure does not show it. Returns how many.
     fn give_up_what_follows(&mut self, draft: &DaeDraft, known: &mut SignAnalysis, first: usize) -> usize {
         let matched: Vec<usize> = (0..self.rows.len())
             .filter(|&row| self.matching.column_of[row] != NONE && !self.rows[row].discrete)
@@ -324,8 +367,9 @@ impl InitialAssembly {
         chosen.len()
     }
 
-    /// What the model says of its components holds for a variable that another one took the place of as state, too; but
-    /// beside starts that are `fixed` it is a guess, for instance of where a loop of joints is to be found.
+    /// Adds checks for starts that the model states for its components, where another variable became the state. Beside
+    /// starts that are `fixed` such a value is a guess, for instance of the branch on which a loop of joints is found;
+    /// its equation is marked so.
     fn check_said_starts(&mut self, draft: &mut DaeDraft, model: &InitializationContext) {
         for &v in model.demoted {
             let variable = &draft.variables[v.index()];
@@ -333,6 +377,7 @@ impl InitialAssembly {
                 continue;
             }
             let row = self.push_start(draft, v);
+            // The search also tells which rows compete with this one.
             let determined = self.augment(row);
             if !determined
                 && self.augmenter.rows_seen.iter().any(|&seen| seen != row && self.is_fixed_start(draft, seen))
@@ -344,6 +389,7 @@ impl InitialAssembly {
         }
     }
 
+    /// Whether a row is the start of a variable with `fixed = true`.
     fn is_fixed_start(&self, draft: &DaeDraft, row: u32) -> bool {
         let equation = self.rows[row as usize].equation;
         let fixed = |v: VarId| draft.variables[v.index()].fixed;
@@ -351,15 +397,18 @@ impl InitialAssembly {
             && matches!(draft.exprs.node(equation.lhs), ExprNode::Var(v) if fixed(v))
     }
 
-    /// A row that determines nothing must hold all the same.
+    /// Records that a row that determines nothing must hold all the same.
     fn check(&mut self, draft: &mut DaeDraft, row: u32) {
         let SystemRow { equation, index, .. } = self.rows[row as usize];
         let difference = draft.exprs.sub(equation.lhs, equation.rhs);
         self.checks.push((difference, index));
     }
 
-    /// States, what was differentiated and what would rather be a state and has a start, before others: those with the more
-    /// confident start, then those that would rather be states.
+    /// The unfixed variables in the order in which their starts are chosen.
+    ///
+    /// First states, other differentiated variables, and variables with a start that prefer to be states; among them
+    /// those with the more confident start, then states, then those that rather want to be states. Then the other
+    /// unknowns, at last free parameters.
     fn start_candidates(&self, draft: &DaeDraft, model: &InitializationContext) -> Vec<VarId> {
         let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
         let is_differentiated = |v: &VarId| is_state(v) || model.demoted.binary_search(v).is_ok();
@@ -382,7 +431,8 @@ impl InitialAssembly {
         found
     }
 
-    /// The first contradiction is reported; later ones may follow from it.
+    /// Reports a contradiction with all rows that compete. Only the first one is reported, because later ones may
+    /// follow from it.
     fn report(&mut self, draft: &DaeDraft, row: u32) {
         if !self.diagnostics.is_empty() {
             return;
@@ -394,7 +444,7 @@ impl InitialAssembly {
         self.diagnostics.push(diagnostic);
     }
 
-    /// Keeps the matched rows.
+    /// The system of matched rows, with the note about chosen starts.
     fn finish(self, draft: &DaeDraft) -> InitialSystem {
         let mut system = EquationSystem { columns: self.columns, ..EquationSystem::default() };
         system.matching = Matching::empty(0, system.columns.len());
@@ -410,7 +460,7 @@ impl InitialAssembly {
             system.matching.join(system.rows.len() as u32 - 1, column);
         }
         let mut diagnostics = self.diagnostics;
-        // what a component's class says of its start needs no words
+        // A start value that the class of a component gives is no surprise and needs no note.
         let unsaid: Vec<VarId> =
             self.chosen.iter().copied().filter(|v| !draft.variables[v.index()].confidence.is_of_component()).collect();
         if diagnostics.is_empty() && !unsaid.is_empty() {
@@ -420,8 +470,9 @@ impl InitialAssembly {
     }
 }
 
-/// Which discrete unknowns keep their value at the start, and the image of every expression there.
+/// By variable: whether it is a discrete unknown that keeps its value at the start. And by expression: its image there.
 fn at_start(draft: &mut DaeDraft, running: &EquationSystem) -> (Vec<bool>, Vec<ExprId>) {
+    // First only `initial()` is replaced: whether a variable keeps its value shows in its equation after that.
     let initial = draft.rewritten(|_, node| (node == ExprNode::Initial).then_some(Exprs::ONE));
     let mut keeps = vec![false; draft.variables.len()];
     for (row, &column) in running.rows.iter().zip(&running.matching.column_of) {
@@ -431,6 +482,7 @@ fn at_start(draft: &mut DaeDraft, running: &EquationSystem) -> (Vec<bool>, Vec<E
         }
     }
     let before: FxHashMap<VarId, VarId> = draft.before_start.iter().copied().collect();
+    // An initial equation determines `pre(v)`, so `v = pre(v)` is no default but a real equation.
     before.keys().for_each(|v| keeps[v.index()] = false);
     let keeping = keeps.clone();
     let mut map = draft.rewritten(|pool, node| match node {

@@ -1,39 +1,44 @@
 //! Maximum matchings of equations and unknowns.
 //!
-//! [`maximum`] is Hopcroft and Karp's algorithm (SIAM J. Comput. 2, 1973); [`PathAugmenter`] extends a matching by one row
-//! at a time, which index reduction and initialization need. Both walk without recursion.
+//! A matching assigns to each equation an unknown that it can be solved for, and no unknown twice. A perfect matching
+//! exists exactly if the system is structurally regular.
+//!
+//! [`maximum`] is the algorithm of J. Hopcroft and R. Karp (SIAM J. Comput. 2, 1973) for a whole system.
+//! [`PathAugmenter`] extends a matching by one row at a time, which index reduction and initialization need. Both
+//! search without recursion, so that long chains of components need no deep stack.
 
 use super::incidence::{IncidenceMatrix, NONE};
 
-/// A matching: each side knows its partner, or [`NONE`].
+/// A matching. Each side knows its partner, or [`NONE`] if it has none.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Matching {
-    /// The column of each row.
+    /// By row: its column.
     pub column_of: Vec<u32>,
-    /// The row of each column.
+    /// By column: its row.
     pub row_of: Vec<u32>,
 }
 
 impl Matching {
-    /// Nothing matched.
+    /// A matching without pairs.
     pub fn empty(rows: usize, columns: usize) -> Self {
         Matching { column_of: vec![NONE; rows], row_of: vec![NONE; columns] }
     }
 
-    /// Makes the two partners.
+    /// Makes a row and a column partners. Does not detach former partners; the caller joins them anew along an
+    /// augmenting path.
     pub fn join(&mut self, row: u32, column: u32) {
         self.column_of[row as usize] = column;
         self.row_of[column as usize] = row;
     }
 
-    /// How many pairs there are.
+    /// The number of pairs.
     #[cfg(test)]
     pub fn size(&self) -> usize {
         self.column_of.iter().filter(|&&c| c != NONE).count()
     }
 }
 
-/// A matching with as many pairs as possible.
+/// A matching with as many pairs as possible, in `O(E sqrt(V))` for `E` entries and `V` rows and columns.
 pub(super) fn maximum(incidence: &IncidenceMatrix, columns: usize) -> Matching {
     let mut matching = greedy(incidence, columns);
     let mut search = HopcroftKarpPhase::new(incidence.rows());
@@ -43,10 +48,12 @@ pub(super) fn maximum(incidence: &IncidenceMatrix, columns: usize) -> Matching {
     matching
 }
 
-/// Rows with few columns first, each with the first free one.
+/// A first matching: rows with few columns first, each with its first free column. It usually leaves few rows for the
+/// search.
 fn greedy(incidence: &IncidenceMatrix, columns: usize) -> Matching {
     let mut matching = Matching::empty(incidence.rows(), columns);
     let mut order: Vec<u32> = (0..incidence.rows() as u32).collect();
+    // Stable, so that rows of equal length stay in order. Longer rows are not told apart.
     order.sort_by_key(|&r| incidence.solvable(r).len().min(4));
     for row in order {
         let free = incidence.solvable(row).iter().find(|&&c| matching.row_of[c as usize] == NONE);
@@ -57,20 +64,26 @@ fn greedy(incidence: &IncidenceMatrix, columns: usize) -> Matching {
     matching
 }
 
-/// One phase of Hopcroft and Karp: breadth-first layers, then disjoint shortest augmenting paths.
+/// One phase of the algorithm: breadth-first layers, then disjoint shortest augmenting paths.
 struct HopcroftKarpPhase {
+    /// By row: its distance from a free row, counted in rows, or [`NONE`].
     layer: Vec<u32>,
+    /// By row: the position of the next column to try in this phase.
     next: Vec<u32>,
+    /// Rows in breadth-first order.
     queue: Vec<u32>,
+    /// Rows of the path being searched.
     path: Vec<u32>,
 }
 
 impl HopcroftKarpPhase {
+    /// Work space for so many rows.
     fn new(rows: usize) -> Self {
         HopcroftKarpPhase { layer: vec![NONE; rows], next: vec![0; rows], queue: Vec::new(), path: Vec::new() }
     }
 
-    /// Numbers the rows by distance from a free row; false when no free column can be reached.
+    /// Numbers the rows by their distance from a free row. False when no free column can be reached: then the matching
+    /// is a maximum one.
     fn layers(&mut self, incidence: &IncidenceMatrix, matching: &Matching) -> bool {
         self.layer.fill(NONE);
         self.next.fill(0);
@@ -97,6 +110,7 @@ impl HopcroftKarpPhase {
         found
     }
 
+    /// Augments along paths from all free rows.
     fn augment_all(&mut self, incidence: &IncidenceMatrix, matching: &mut Matching) {
         for row in 0..matching.column_of.len() as u32 {
             if matching.column_of[row as usize] == NONE {
@@ -105,7 +119,8 @@ impl HopcroftKarpPhase {
         }
     }
 
-    /// Depth first along the layers; each row's columns are tried once in a phase.
+    /// Searches depth first along the layers from one free row, and augments if it reaches a free column. Each entry of
+    /// a row is tried once in a phase.
     fn augment(&mut self, incidence: &IncidenceMatrix, matching: &mut Matching, start: u32) {
         self.path.clear();
         self.path.push(start);
@@ -126,7 +141,7 @@ impl HopcroftKarpPhase {
         }
     }
 
-    /// Gives every row of the path the column it was looking at.
+    /// Gives every row of the path the column that it tried last.
     fn flip(&mut self, incidence: &IncidenceMatrix, matching: &mut Matching) {
         for &row in &self.path {
             let c = incidence.solvable(row)[self.next[row as usize] as usize - 1];
@@ -135,23 +150,30 @@ impl HopcroftKarpPhase {
     }
 }
 
-/// Finds augmenting paths from single rows.
+/// Finds augmenting paths from single rows. It is work space that is reused from search to search.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PathAugmenter {
+    /// By row: the stamp of the last search that saw it.
     row_mark: Vec<u32>,
+    /// By column: the stamp of the last search that saw it.
     column_mark: Vec<u32>,
+    /// The stamp of the current search.
     stamp: u32,
+    /// Rows of the path, each with the position of the next column to try.
     path: Vec<(u32, u32)>,
-    /// Rows seen by the last search.
+    /// Rows seen by the last search, in the order in which it met them.
     pub rows_seen: Vec<u32>,
-    /// Columns seen by the last search.
+    /// Columns seen by the last search, in the order in which it met them.
     pub columns_seen: Vec<u32>,
 }
 
 impl PathAugmenter {
-    /// Matches `row`, moving other rows to other columns as needed; entries (row, position in it, column) for which `usable`
-    /// says false are left alone. If it fails, [`PathAugmenter::rows_seen`] holds the rows that share too few columns, `row`
-    /// among them, and [`PathAugmenter::columns_seen`] these columns.
+    /// Matches `row`, moving other rows to other columns as needed. Entries (row, position in it, column) for which
+    /// `usable` is false are ignored.
+    ///
+    /// False if there is no augmenting path. Then [`PathAugmenter::rows_seen`] holds the rows that share too few
+    /// columns, `row` among them, and [`PathAugmenter::columns_seen`] these columns. Time is linear in the entries at
+    /// worst.
     pub fn augment(
         &mut self,
         incidence: &IncidenceMatrix,
@@ -164,7 +186,7 @@ impl PathAugmenter {
         self.path.push((row, 0));
         while let Some(&(row, position)) = self.path.last() {
             if position == 0 {
-                // Look ahead for a free column before going deeper.
+                // Look for a free column before going deeper; most paths then are short.
                 let mut entries = incidence.solvable(row).iter().enumerate();
                 let free = entries.position(|(i, &c)| matching.row_of[c as usize] == NONE && usable(row, i, c));
                 if let Some(at) = free {
@@ -178,6 +200,8 @@ impl PathAugmenter {
         false
     }
 
+    /// Tries the column at `position` of the last row of the path: extends the path to the row that owns the column, or
+    /// goes back if the row has no more columns.
     fn deepen(
         &mut self,
         incidence: &IncidenceMatrix,
@@ -203,7 +227,9 @@ impl PathAugmenter {
         }
     }
 
+    /// Starts a search with a fresh stamp and room for so many rows and columns.
     fn begin(&mut self, rows: usize, columns: usize) {
+        // After an overflow old marks could be taken for new ones.
         if self.stamp == u32::MAX {
             self.row_mark.clear();
             self.column_mark.clear();
@@ -217,11 +243,13 @@ impl PathAugmenter {
         self.columns_seen.clear();
     }
 
+    /// Marks a row as seen.
     fn see_row(&mut self, row: u32) {
         self.row_mark[row as usize] = self.stamp;
         self.rows_seen.push(row);
     }
 
+    /// Gives every row of the path the column that it tried last.
     fn flip(&mut self, incidence: &IncidenceMatrix, matching: &mut Matching) {
         for &(row, position) in &self.path {
             matching.join(row, incidence.solvable(row)[position as usize - 1]);

@@ -1,5 +1,8 @@
-//! What the analysis says when a model cannot be solved: whole groups, by name, with the reason where a known pattern
-//! shows it.
+//! Diagnostics of the analysis: what it says when a model cannot be solved.
+//!
+//! Each function makes one kind of diagnostic. They name whole groups of variables and equations as the user wrote
+//! them, and give the physical reason where a known pattern shows it, such as a circuit without ground. The other files
+//! of `structure` call them; none of them decides whether something is wrong. Lists are cut after [`MOST_ITEMS`].
 
 use super::draft::{DaeDraft, SystemRole};
 use super::dulmage_mendelsohn::DecompositionPart;
@@ -12,10 +15,10 @@ use crate::flat::{ElementOrigin, FlatEquation, OriginKind};
 use bramah_expr::{ExprId, VarId};
 use bramah_syntax::diag::{Code, Diagnostic, Severity};
 
-/// Lists are cut after so many items.
+/// The most names, equations or places that a message lists.
 const MOST_ITEMS: usize = 10;
 
-/// Parameters whose bindings use each other.
+/// Parameters whose bindings use each other (E214). `circle` has at least one member.
 pub(super) fn cyclic_parameters(draft: &DaeDraft, circle: &[VarId]) -> Diagnostic {
     let names: Vec<String> = circle.iter().map(|&v| name(draft, v)).collect();
     let message = match names.as_slice() {
@@ -31,8 +34,8 @@ pub(super) fn cyclic_parameters(draft: &DaeDraft, circle: &[VarId]) -> Diagnosti
     made.help("give one of them a value that does not use the others")
 }
 
-/// Two names of one quantity with different starts: a contradiction, unless one of them is fixed, to which the other one
-/// yields.
+/// Two names of one quantity with different starts. It is an error (E401) if both are fixed or none is. If one is
+/// fixed, the other yields, and it is a warning (W404).
 pub(super) fn contradicting_aliases(draft: &DaeDraft, known: &mut SignAnalysis, alias: Alias) -> Diagnostic {
     let mut value = |v: VarId| {
         let start = draft.variables[v.index()].start;
@@ -61,14 +64,14 @@ pub(super) fn contradicting_aliases(draft: &DaeDraft, known: &mut SignAnalysis, 
     if !made.is_error() {
         return made.help("give both the same value, or `fixed = true` to the one that must hold");
     }
-    // the component nearest to the user's model is the one that was added to the other
+    // The start with fewer dots is the user's own, or nearer to it, and is the one to be freed.
     let depth = |v: VarId| draft.variables[v.index()].name.matches('.').count();
     let freed = starts::modifier(&draft.variables[if depth(a) <= depth(b) { a } else { b }.index()].name, false);
     let freed = freed.map_or(String::new(), |m| format!(", as by `{m}`"));
     made.help(format!("fix the start of one of them only{freed}, or give both the same value"))
 }
 
-/// A constraint that would have to be differentiated but cannot be.
+/// A constraint that would have to be differentiated but cannot be (E304). `v` is the variable without the derivative.
 pub(super) fn not_differentiable(draft: &DaeDraft, equation: &FlatEquation, v: VarId) -> Diagnostic {
     let input = draft.role(v) == SystemRole::Input;
     let message = if input {
@@ -76,6 +79,7 @@ pub(super) fn not_differentiable(draft: &DaeDraft, equation: &FlatEquation, v: V
     } else {
         format!("a derivative of {} of too high an order is needed", name(draft, v))
     };
+    // Either the equation contains the derivative itself, or index reduction asked for it.
     let direct = [equation.lhs, equation.rhs].iter().any(|&e| draft.exprs.derivatives(e).contains(&v));
     let text = if direct {
         "it is used here".to_owned()
@@ -90,7 +94,8 @@ pub(super) fn not_differentiable(draft: &DaeDraft, equation: &FlatEquation, v: V
     })
 }
 
-/// A constraint whose unknowns cancel when it is differentiated: another equation says the same, or contradicts it.
+/// A constraint whose unknowns cancel when it is differentiated: another equation says the same, or contradicts it
+/// (E301).
 pub(super) fn cancelling(draft: &DaeDraft, equation: &FlatEquation) -> Diagnostic {
     let message = format!("the equation `{}` determines nothing", sides(draft, equation));
     let made = Diagnostic::new(Code::Singular, message)
@@ -99,7 +104,7 @@ pub(super) fn cancelling(draft: &DaeDraft, equation: &FlatEquation) -> Diagnosti
     located(draft, made, equation)
 }
 
-/// Equations whose unknowns cancel when they are added up, while something else is left.
+/// Equations whose unknowns cancel when they are added up, while `left` remains, which would have to be 0 (E303).
 pub(super) fn contradiction(draft: &DaeDraft, equations: &[FlatEquation], left: ExprId) -> Diagnostic {
     let message =
         format!("{} equations contradict each other: together they say `0 = {}`", equations.len(), draft.text(left));
@@ -108,11 +113,13 @@ pub(super) fn contradiction(draft: &DaeDraft, equations: &[FlatEquation], left: 
     )
 }
 
-/// Equations of which one follows from the others, and unknowns that therefore can change together by these parts.
+/// Equations of which one follows from the others. `free` lists unknowns that can therefore change together, each with
+/// its part in a common change.
 pub(super) fn repeated(draft: &DaeDraft, equations: &[FlatEquation], free: &[(VarId, f64)]) -> Diagnostic {
     let message = format!("each of {} equations follows from the others", equations.len());
     let unknowns: Vec<VarId> = free.iter().map(|(v, _)| *v).collect();
     let names: Vec<String> = unknowns.iter().map(|&v| name(draft, v)).collect();
+    // Equal parts of potentials mean that a common level is free; other parts are listed as they are.
     let together = free.iter().all(|(_, part)| (part - free[0].1).abs() < 1e-9);
     let flow = unknowns.iter().any(|v| draft.variables[v.index()].flow);
     let made = Diagnostic::new(Code::Singular, message);
@@ -135,7 +142,7 @@ pub(super) fn repeated(draft: &DaeDraft, equations: &[FlatEquation], free: &[(Va
     }
 }
 
-/// `reinit` of something that follows from other quantities.
+/// `reinit` of a variable that follows from other quantities. `origin` is the place of the `reinit`.
 pub(super) fn reinit_of_no_state(draft: &DaeDraft, v: VarId, origin: ElementOrigin) -> Diagnostic {
     let message = format!("{} cannot be set by `reinit`, because it follows from other quantities", name(draft, v));
     let instance = &draft.instances[origin.instance as usize];
@@ -146,7 +153,8 @@ pub(super) fn reinit_of_no_state(draft: &DaeDraft, v: VarId, origin: ElementOrig
         .help("set the state it follows from; a variable is a state if its derivative is used and nothing ties it to others")
 }
 
-/// A position that a constraint of parameters alone fixes, though the circuit has an acceleration for it.
+/// A position that a constraint of parameters alone fixes, though the circuit computes an acceleration for it. `bodies`
+/// are the names of the position.
 pub(super) fn held_still(draft: &DaeDraft, bodies: &[VarId], equation: &FlatEquation) -> Diagnostic {
     let names: Vec<String> = bodies.iter().map(|&v| name(draft, v)).collect();
     let mut made = Diagnostic::new(Code::HeldStill, format!("{} cannot change", listed(&names)));
@@ -159,7 +167,7 @@ pub(super) fn held_still(draft: &DaeDraft, bodies: &[VarId], equation: &FlatEqua
         .help("if it should move, put a spring, a cylinder or an actuator between it and what holds it")
 }
 
-/// Constraints that no choice of states satisfies.
+/// Constraints that no choice of states satisfies. `unknowns` are those that no equation is left for.
 pub(super) fn dependent_constraints(draft: &DaeDraft, equations: &[FlatEquation], unknowns: &[Unknown]) -> Diagnostic {
     let made = Diagnostic::new(Code::Overdetermined, "constraints and their derivatives depend on each other");
     let made = with_equations(draft, made, equations);
@@ -167,8 +175,10 @@ pub(super) fn dependent_constraints(draft: &DaeDraft, equations: &[FlatEquation]
     if names.is_empty() { made } else { made.note(format!("nothing is left to determine {}", listed(&names))) }
 }
 
-/// Initial equations and fixed starts that say too much.
+/// Initial equations and fixed starts that say too much (E401). `extra` is the condition that found no unknown, `group`
+/// all equations that compete with it.
 pub(super) fn initially_contradicting(draft: &DaeDraft, extra: &FlatEquation, group: &[FlatEquation]) -> Diagnostic {
+    // The equations of the model are no choice of the user here, so only conditions are counted and listed.
     let conditions: Vec<FlatEquation> = group.iter().filter(|e| is_condition(draft, e)).copied().collect();
     let message = if extra.origin.kind == OriginKind::Start {
         format!("the fixed start of `{}` is one condition too many", draft.text(extra.lhs))
@@ -186,19 +196,20 @@ pub(super) fn initially_contradicting(draft: &DaeDraft, extra: &FlatEquation, gr
     made.note(note).help("remove one of these conditions, for instance by `fixed = false`")
 }
 
+/// Whether an equation holds at the start only.
 fn is_condition(draft: &DaeDraft, equation: &FlatEquation) -> bool {
     let initial = &draft.initial_equations;
     equation.origin.kind == OriginKind::Start || initial.iter().any(|e| e.origin == equation.origin)
 }
 
-/// Unknowns that nothing determines at the start.
+/// Unknowns that no equation and no start value determines at the start.
 pub(super) fn initially_undetermined(draft: &DaeDraft, open: &[Unknown]) -> Diagnostic {
     let names: Vec<String> = open.iter().map(|&u| unknown_name(draft, u)).collect();
     let made = Diagnostic::new(Code::InitialFailed, format!("nothing determines {} at the start", listed(&names)));
     made.help("add an initial equation or a fixed start value")
 }
 
-/// Start values that the compiler fixed to make the start determined.
+/// A note about start values that the compiler fixed to make the start determined.
 pub(super) fn chosen_starts(draft: &DaeDraft, chosen: &[VarId]) -> Diagnostic {
     let names: Vec<String> = chosen.iter().map(|&v| name(draft, v)).collect();
     let text = format!("start values used although not `fixed`: {}", listed(&names));
@@ -211,9 +222,11 @@ pub(super) fn chosen_starts(draft: &DaeDraft, chosen: &[VarId]) -> Diagnostic {
     made
 }
 
-/// A group of nodes whose flows add up to nothing, so that only differences of their levels matter.
+/// A group of nodes that exchanges nothing with a reference, so that only differences of potentials matter. `flows` are
+/// the flows of its sums, ascending.
 pub(super) fn closed_group(draft: &DaeDraft, aliases: &[Alias], flows: &[VarId]) -> Diagnostic {
     let mut names: Vec<VarId> = flows.to_vec();
+    // Ports may carry the eliminated names of the flows.
     names.extend(aliases.iter().filter(|a| flows.binary_search(&a.target).is_ok()).map(|a| a.variable));
     let variable = |v: &VarId| &draft.variables[v.index()];
     let mut ports: Vec<u32> = names.iter().map(variable).filter(|v| v.flow).map(|v| v.origin.instance).collect();
@@ -227,6 +240,7 @@ pub(super) fn closed_group(draft: &DaeDraft, aliases: &[Alias], flows: &[VarId])
     owners.sort_unstable();
     owners.dedup();
     let components: Vec<String> = owners.iter().map(|&i| draft.instances[i as usize].name.clone()).collect();
+    // The flows belong to no connector: the equations were written by hand.
     if levels.is_empty() {
         let names: Vec<String> = flows.iter().map(|&v| name(draft, v)).collect();
         let message = format!("the sums that hold {} follow from each other", listed(&names));
@@ -252,39 +266,49 @@ pub(super) fn closed_group(draft: &DaeDraft, aliases: &[Alias], flows: &[VarId])
     .help(advice)
 }
 
-/// A structurally singular system.
-///
-/// `aliases` are those eliminated from this system already.
+/// A structurally singular system (E301, E302, E303). `aliases` are those eliminated from this system already; an empty
+/// list means that it is as the user wrote it.
 pub(super) fn singular(draft: &DaeDraft, aliases: &[Alias], found: &StructuralSingularity) -> Diagnostic {
     let report = SingularityReport { draft, aliases, found };
     let made = report.headline();
     report.with_facts(made)
 }
 
+/// Makes the message about a structurally singular system.
 struct SingularityReport<'a> {
+    /// The system.
     draft: &'a DaeDraft,
+    /// The aliases eliminated from it.
     aliases: &'a [Alias],
+    /// Its matching and decomposition.
     found: &'a StructuralSingularity,
 }
 
 impl SingularityReport<'_> {
+    /// The underdetermined part.
     fn under(&self) -> &DecompositionPart {
         &self.found.parts.under
     }
 
+    /// The overdetermined part.
     fn over(&self) -> &DecompositionPart {
         &self.found.parts.over
     }
 
+    /// The unknowns of a part.
     fn variables(&self, part: &DecompositionPart) -> Vec<VarId> {
         part.columns.iter().map(|&c| self.found.overview.columns[c as usize]).collect()
     }
 
+    /// The equations of a part.
     fn equations(&self, part: &DecompositionPart) -> Vec<FlatEquation> {
         part.rows.iter().map(|&r| self.draft.equations[r as usize]).collect()
     }
 
-    /// The recognised pattern, or just the parts.
+    /// The message with its main places: a recognised pattern, or the sizes of the parts.
+    ///
+    /// Patterns are tried from the most to the least specific: an equation of known quantities only, a group without a
+    /// reference, a potential that is determined twice.
     fn headline(&self) -> Diagnostic {
         let unknowns = self.variables(self.under());
         let empty: Vec<FlatEquation> =
@@ -294,7 +318,7 @@ impl SingularityReport<'_> {
             return self.without_unknowns(equation);
         }
         let levels: Vec<VarId> = unknowns.iter().copied().filter(|&v| self.is_potential(v)).collect();
-        // The flows at a node follow from those at the others: the group exchanges nothing with a reference.
+        // A sum of flows without unknowns follows from the other sums: the group exchanges nothing with a reference.
         let closed = empty.iter().any(|e| e.origin.kind == OriginKind::ConnectFlow);
         if !levels.is_empty() && (closed || levels.len() == unknowns.len()) {
             return self.no_reference(&levels);
@@ -310,6 +334,7 @@ impl SingularityReport<'_> {
         }
     }
 
+    /// The message where no pattern fits: unknowns that no equation mentions, or the counts of equations and unknowns.
     fn general(&self, unknowns: &[VarId]) -> Diagnostic {
         let unused: Vec<VarId> = unknowns.iter().copied().filter(|&v| self.is_unused(v)).collect();
         if !unused.is_empty() {
@@ -331,13 +356,14 @@ impl SingularityReport<'_> {
         self.labelled(Diagnostic::new(Code::Singular, message), unknowns)
     }
 
-    /// An equation of parameters, inputs and numbers only.
+    /// The message about an equation of parameters, inputs and numbers only.
     fn without_unknowns(&self, equation: &FlatEquation) -> Diagnostic {
         let used = self.draft.exprs.dependencies(&[equation.lhs, equation.rhs]).vars;
         let names: Vec<String> = used.iter().map(|&v| name(self.draft, v)).collect();
         let message = format!("the equation `{}` holds no unknown", sides(self.draft, equation));
         let mut made = located(self.draft, Diagnostic::new(Code::Overdetermined, message), equation);
         made = made.at(equation.origin.span, "everything in it is known already");
+        // Nothing is left in the equation: its sides became equal when aliases were eliminated.
         if names.is_empty() {
             return made.note("its sides cancel, so another equation says the same already");
         }
@@ -345,7 +371,7 @@ impl SingularityReport<'_> {
             .help("if one of them is meant to be found by this equation, declare it without `parameter` or `input`")
     }
 
-    /// Only levels of connected nodes are undetermined.
+    /// The message where only levels (potentials) of connected nodes are undetermined.
     fn no_reference(&self, unknowns: &[VarId]) -> Diagnostic {
         let (level, advice) = kind_of_level(self.draft, unknowns);
         let components = self.components_of(unknowns);
@@ -354,9 +380,11 @@ impl SingularityReport<'_> {
         self.labelled(made, unknowns)
     }
 
+    /// The message where more equations than needed determine a few quantities.
     fn determined_twice(&self, twice: &[VarId]) -> Diagnostic {
         let equations = self.equations(self.over());
         let mut owners: Vec<String> = equations.iter().map(|e| self.owner(e)).filter(|o| !o.is_empty()).collect();
+        // Two different components suggest two ideal sources; one component suggests a mistake in its equations.
         owners.dedup();
         let levels: Vec<VarId> = twice.iter().copied().filter(|&v| self.is_potential(v)).collect();
         let message = match (owners.as_slice(), levels.is_empty()) {
@@ -380,6 +408,7 @@ impl SingularityReport<'_> {
         made.help("two ideal sources cannot act on the same quantity: put a resistance or a storage between them, or remove one")
     }
 
+    /// Adds the counts and the members of both parts, so that the reader can check the headline.
     fn with_facts(&self, made: Diagnostic) -> Diagnostic {
         let overview = &self.found.overview;
         let pairs = overview.matching.column_of.iter().filter(|&&c| c != super::incidence::NONE).count();
@@ -390,7 +419,7 @@ impl SingularityReport<'_> {
         self.part_note(made, "too many equations for", self.over())
     }
 
-    /// The unknowns of a part, a line for each component.
+    /// Adds the unknowns of a part, one line for each component.
     fn part_note(&self, made: Diagnostic, title: &str, part: &DecompositionPart) -> Diagnostic {
         if part.columns.is_empty() {
             return made;
@@ -416,6 +445,7 @@ impl SingularityReport<'_> {
         made.note(format!("{title} these unknowns ({rows}, {columns}):\n{}", lines.join("\n")))
     }
 
+    /// Adds the places where the unknowns are declared, and the instance of the first one.
     fn labelled(&self, mut made: Diagnostic, unknowns: &[VarId]) -> Diagnostic {
         for &v in unknowns.iter().take(MOST_ITEMS) {
             let variable = &self.draft.variables[v.index()];
@@ -430,16 +460,19 @@ impl SingularityReport<'_> {
         }
     }
 
+    /// The name of the instance that an equation belongs to; empty for the model itself.
     fn owner(&self, equation: &FlatEquation) -> String {
         self.draft.instances[equation.origin.instance as usize].name.clone()
     }
 
+    /// Whether an equation contains no unknown.
     fn holds_nothing(&self, equation: &FlatEquation) -> bool {
         let found = self.draft.exprs.dependencies(&[equation.lhs, equation.rhs]);
         let unknown = |v: &VarId| matches!(self.draft.role(*v), SystemRole::Continuous | SystemRole::Discrete);
         !found.vars.iter().chain(&found.ders).any(unknown)
     }
 
+    /// Whether no equation can be solved for a variable or its derivatives.
     fn is_unused(&self, v: VarId) -> bool {
         let overview = &self.found.overview;
         let column = overview.columns.iter().position(|&c| c == v).map(|c| c as u32);
@@ -448,13 +481,13 @@ impl SingularityReport<'_> {
         })
     }
 
-    /// All names of a quantity.
+    /// All names of a quantity: the variable and its aliases.
     fn names_of(&self, v: VarId) -> impl Iterator<Item = VarId> {
         let others = self.aliases.iter().filter(move |a| a.target == v).map(|a| a.variable);
         std::iter::once(v).chain(others)
     }
 
-    /// The potential of a connector, or equal to one.
+    /// Whether a variable is the potential of a connector, or equal to one.
     fn is_potential(&self, v: VarId) -> bool {
         self.names_of(v).any(|v| {
             let variable = &self.draft.variables[v.index()];
@@ -462,7 +495,7 @@ impl SingularityReport<'_> {
         })
     }
 
-    /// The components whose connectors carry these potentials, in order.
+    /// The names of the components whose connectors carry these potentials, in the order of instances.
     fn components_of(&self, unknowns: &[VarId]) -> Vec<String> {
         let mut found: Vec<u32> = Vec::new();
         for v in unknowns.iter().flat_map(|&v| self.names_of(v)) {
@@ -477,7 +510,7 @@ impl SingularityReport<'_> {
     }
 }
 
-/// What the potentials are called, and what fixes them.
+/// What potentials with this unit are called, and advice on what fixes them. The first unit among the unknowns decides.
 fn kind_of_level(draft: &DaeDraft, unknowns: &[VarId]) -> (&'static str, &'static str) {
     let unit = unknowns.iter().find_map(|v| draft.variables[v.index()].unit.as_deref());
     match unit {
@@ -490,6 +523,7 @@ fn kind_of_level(draft: &DaeDraft, unknowns: &[VarId]) -> (&'static str, &'stati
     }
 }
 
+/// Adds the places of equations, each with its text and why it exists.
 fn with_equations(draft: &DaeDraft, mut made: Diagnostic, equations: &[FlatEquation]) -> Diagnostic {
     for equation in equations.iter().take(MOST_ITEMS) {
         made = made.at(equation.origin.span, format!("`{}`{}", sides(draft, equation), reason(equation.origin.kind)));
@@ -503,11 +537,13 @@ fn with_equations(draft: &DaeDraft, mut made: Diagnostic, equations: &[FlatEquat
     }
 }
 
+/// Adds the instance of an equation and its class.
 fn located(draft: &DaeDraft, made: Diagnostic, equation: &FlatEquation) -> Diagnostic {
     let instance = &draft.instances[equation.origin.instance as usize];
     made.instance(instance.name.clone()).class(instance.class.clone())
 }
 
+/// Why the compiler made an equation, as the end of a label; empty for equations of the user.
 fn reason(kind: OriginKind) -> &'static str {
     match kind {
         OriginKind::ConnectPotential => ", from a connection",
@@ -520,15 +556,18 @@ fn reason(kind: OriginKind) -> &'static str {
     }
 }
 
+/// The text of an equation.
 fn sides(draft: &DaeDraft, equation: &FlatEquation) -> String {
     let side = |e: ExprId| draft.text(e);
     format!("{} = {}", side(equation.lhs), side(equation.rhs))
 }
 
+/// The name of a variable in backticks.
 fn name(draft: &DaeDraft, v: VarId) -> String {
     format!("`{}`", draft.variables[v.index()].name)
 }
 
+/// The name of an unknown in backticks.
 fn unknown_name(draft: &DaeDraft, unknown: Unknown) -> String {
     match unknown {
         Unknown::Var(v) => name(draft, v),
@@ -536,14 +575,17 @@ fn unknown_name(draft: &DaeDraft, unknown: Unknown) -> String {
     }
 }
 
+/// A number with its noun, which takes an `s` except after 1.
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
+/// Names joined by commas, cut after [`MOST_ITEMS`].
 fn listed(names: &[String]) -> String {
     cut(names, ", ")
 }
 
+/// Names joined by a separator, cut after [`MOST_ITEMS`].
 fn cut(names: &[String], separator: &str) -> String {
     let shown = names[..names.len().min(MOST_ITEMS)].join(separator);
     if names.len() > MOST_ITEMS { format!("{shown} and {} more", names.len() - MOST_ITEMS) } else { shown }

@@ -1,4 +1,13 @@
-//! From the flat model to a DAE in block lower triangular form: aliases removed, matched, index reduced, torn.
+//! Structural analysis: from the flat model to a differential-algebraic system in block lower triangular form.
+//!
+//! Enters: a [`flat::FlatModel`] and a [`StateChoice`]. Leaves: a [`Dae`], or diagnostics where the model is
+//! structurally singular. `compile::analyze` calls [`analyze`]; the crate `solve` lowers the result to kernels.
+//!
+//! The steps, in this order (`analysis` holds them): parameters are sorted and evaluated (`parameters`); events become
+//! discrete variables and equations (`delays`, `events`, `discrete`); aliases are eliminated (`alias`); the system is
+//! checked for structural regularity (`regularity`); hidden linear dependence is made explicit (`dependence`); the
+//! index is reduced (`pantelides`, `dummy_derivatives`); the equations are matched, sorted and torn (`matching`, `blt`,
+//! `tearing`).
 //!
 //! [`Dae`] holds three sorted systems over one set of variables: `continuous` (the right-hand side between events),
 //! `event` (the same with all discrete equations, solved at events) and `initial` (solved once at the start).
@@ -42,6 +51,8 @@ use crate::flat;
 use bramah_expr::{ExprId, Exprs, RelationalOp, VarId};
 
 /// The model as the numerical stages see it.
+///
+/// All `ExprId`s refer to `exprs`, all `VarId`s to `variables`, all numbers of equations to `equations`.
 #[derive(Clone, Debug, Default)]
 pub struct Dae {
     /// The class, by its full name.
@@ -90,74 +101,77 @@ pub struct Dae {
     pub actions: Vec<EventAction>,
     /// `assert`s outside `when`.
     pub asserts: Vec<flat::FlatAssertion>,
-    /// Groups among which the states were chosen; the solver asks for another choice when a group's pivots degenerate.
+    /// Groups of constraints among whose candidates the states were chosen. The solver asks for another choice when the
+    /// pivots of a group become small.
     pub selections: Vec<StateSelection>,
-    /// What may be integrated in place of states.
+    /// Quantities that the solver may integrate in place of states, at most one for each state.
     pub conserved: Vec<ConservedQuantity>,
     /// Expressions that must vanish at the start, each with its equation: fixed starts of variables that constraints
     /// tie to others, which hold only if they are consistent. Checked after the initial system is solved.
     pub initial_checks: Vec<(ExprId, u32)>,
-    /// Start values the compiler chose to make the initial system determined, for notes.
+    /// Variables whose start values the compiler fixed to make the initial system determined. Notes list them.
     pub chosen_starts: Vec<VarId>,
 }
 
 impl Dae {
-    /// Whether results show a variable: what is public, and states whoever they belong to, but not what is annotated
-    /// `HideResult`.
+    /// Whether results show a variable. They show every public variable. They show a hidden one only if it is a state
+    /// and not annotated `HideResult`.
     pub fn is_shown(&self, v: VarId) -> bool {
         let variable = &self.variables[v.index()];
         !variable.hidden || !variable.unwanted && self.states.binary_search(&v).is_ok()
     }
 }
 
-/// `variable = target` or `variable = -target`.
+/// `variable = target` or `variable = -target`. Results compute the variable from its target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Alias {
-    /// The variable that is not computed.
+    /// The variable that is not computed. No block and no equation of a block contains it.
     pub variable: VarId,
-    /// What it equals.
+    /// The variable that it equals. It is never an alias itself.
     pub target: VarId,
-    /// With the sign turned.
+    /// True for `variable = -target`.
     pub negated: bool,
 }
 
-/// What a block solves for.
+/// What a block solves for: a column of a sorted system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Unknown {
     /// A variable.
     Var(VarId),
-    /// The derivative of a state.
+    /// The derivative of a state. Other derivatives are variables of their own.
     Der(VarId),
 }
 
-/// A step of a sorted system.
+/// A step of a sorted system. Each block reads only known quantities and unknowns of earlier blocks.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BltBlock {
     /// One explicit assignment.
     Assign(ExplicitAssignment),
-    /// An algebraic loop, torn.
+    /// A system of simultaneous equations with its tearing variables.
     Loop(AlgebraicLoop),
-    /// A loop through discrete equations; only in `event` and `initial`.
+    /// A loop through discrete equations. It occurs only in `event` and `initial`.
     Mixed(MixedLoop),
 }
 
-/// `unknown := value`
+/// `unknown := value`: an equation that was solved symbolically.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ExplicitAssignment {
     /// What is computed.
     pub unknown: Unknown,
-    /// From what.
+    /// The expression that gives its value. It does not contain the unknown.
     pub value: ExprId,
     /// The equation it was solved from: index into `Dae::equations`.
     pub equation: u32,
 }
 
 /// An algebraic loop: given the tearing variables, `inner` follows explicitly, and `residuals` must vanish.
+///
+/// The loop has `tearing.len() + inner.len()` unknowns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AlgebraicLoop {
-    /// Iteration unknowns, as many as residuals.
+    /// Tearing variables: the unknowns of the iteration, as many as residuals.
     pub tearing: Vec<Unknown>,
-    /// Explicit assignments, in order.
+    /// Explicit assignments, in an order in which each reads only the tearing variables and earlier ones.
     pub inner: Vec<ExplicitAssignment>,
     /// Expressions that must be zero, each with its equation.
     pub residuals: Vec<(ExprId, u32)>,
@@ -174,18 +188,18 @@ pub struct MixedLoop {
     pub discrete: Vec<ExplicitAssignment>,
 }
 
-/// A relation, or a `floor`, with its discrete stand-in.
+/// A relation or a `floor` whose change is an event, with the discrete variable that replaces it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ZeroCrossing {
-    /// The discrete variable that stands for it in all equations.
+    /// The discrete variable that stands for it in all equations. It keeps its value between events.
     pub mode: VarId,
-    /// What is watched.
+    /// The expression that the solver watches for a change.
     pub kind: CrossingKind,
     /// The place of the relation and the instance it stands in.
     pub origin: flat::ElementOrigin,
 }
 
-/// What is watched.
+/// The expression of a [`ZeroCrossing`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CrossingKind {
     /// `left rel right` with at least one continuous side.
@@ -203,7 +217,7 @@ pub struct SampleEvent {
     pub mode: VarId,
     /// First time.
     pub start: ExprId,
-    /// Interval, positive.
+    /// Time between two events, in seconds. It must be positive.
     pub interval: ExprId,
     /// Where it stands.
     pub origin: flat::ElementOrigin,
@@ -233,7 +247,7 @@ pub struct EventAction {
     pub origin: flat::ElementOrigin,
 }
 
-/// What happens.
+/// The kinds of [`EventAction`].
 #[derive(Clone, Debug, PartialEq)]
 pub enum EventActionKind {
     /// A state gets a new value.
@@ -249,17 +263,20 @@ pub enum EventActionKind {
 pub struct ConservedQuantity {
     /// The state, one of `Dae::states`.
     pub state: VarId,
-    /// Stands for the quantity as an unknown of the solver; no block computes it.
+    /// The variable of the solver that stands for the quantity. No block computes it.
     pub variable: VarId,
-    /// The quantity by the states.
+    /// The quantity as an expression of states and of what the continuous system computes.
     pub quantity: ExprId,
-    /// Its rate.
+    /// The time derivative of the quantity.
     pub rate: ExprId,
     /// `variable = quantity`: index into `Dae::equations`.
     pub equation: u32,
 }
 
 /// A group of constraints with more differentiated candidates than degrees of freedom.
+///
+/// The matrix `rows` restricted to the columns of `dummies` must stay regular during the run; else the choice of states
+/// is no longer valid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateSelection {
     /// Candidates; the derivatives of `candidates.len() - rows.len()` of them are integrated, the rest are dummies.
@@ -270,7 +287,8 @@ pub struct StateSelection {
     pub rows: Vec<Vec<ExprId>>,
 }
 
-/// States that should be preferred beyond `stateSelect`, from an earlier run's pivots; empty at first.
+/// States that should be preferred beyond `stateSelect`. It is empty for a first analysis; the solver fills it from the
+/// pivots of a run whose choice of states became singular.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StateChoice {
     /// Candidates to take as states.

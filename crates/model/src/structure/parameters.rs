@@ -1,4 +1,8 @@
-//! Parameters: the order in which bindings are evaluated, their values, and what follows for expressions of them.
+//! Parameters: the order in which bindings are evaluated, their values, and the signs of expressions that follow.
+//!
+//! [`order`] sorts the bindings, [`values`] evaluates them, [`check`] reports values out of range. [`SignAnalysis`]
+//! then answers two questions for the other steps: the value of an expression of parameters, and whether an expression
+//! can vanish. `analysis` calls them in this order.
 
 use super::draft::{DaeDraft, SystemRole};
 use super::{EventActionKind, blt, messages};
@@ -7,8 +11,10 @@ use crate::flat::{FlatVariable, OriginKind, ScalarType, Variability};
 use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 use bramah_syntax::diag::{Code, Diagnostic};
 
-/// Sorts the parameters so that each binding refers to earlier ones only, after moving those that depend on free
-/// parameters to the free ones: their bindings become initial equations. The error is a circle of bindings that no
+/// Sorts the parameters so that each binding refers to earlier ones only.
+///
+/// Parameters that depend on free parameters become free themselves; their bindings become initial equations. Where
+/// bindings use each other, conditions that are known already are decided first. `Err` is a circle of bindings that no
 /// condition opens.
 pub(super) fn order(draft: &mut DaeDraft) -> Result<Vec<VarId>, Diagnostic> {
     loop {
@@ -23,14 +29,18 @@ pub(super) fn order(draft: &mut DaeDraft) -> Result<Vec<VarId>, Diagnostic> {
     }
 }
 
-/// Parameters whose bindings use each other, and those that come before them.
+/// A circle of parameters.
 struct BindingCycle {
+    /// Parameters that are sorted before the circle; their values are known.
     before: Vec<VarId>,
+    /// Parameters whose bindings use each other.
     members: Vec<VarId>,
 }
 
-/// `T = if useT then T0 else f(h)` and `h = if useT then g(T) else h0` use each other on paper only: conditions that are known
-/// decide now, and what they read is fixed with the model. False where no binding has such a condition.
+/// Replaces `if` expressions with known conditions in the bindings of a circle by the chosen branch.
+///
+/// `T = if useT then T0 else f(h)` and `h = if useT then g(T) else h0` use each other only on paper. Parameters in a
+/// decided condition are fixed with the structure. False where no binding has such a condition.
 fn decide_conditions(draft: &mut DaeDraft, before: &[VarId], members: &[VarId]) -> bool {
     let values = values(draft, before);
     let mut decided = false;
@@ -43,6 +53,7 @@ fn decide_conditions(draft: &mut DaeDraft, before: &[VarId], members: &[VarId]) 
             if found.time || !found.ders.is_empty() || !found.pres.is_empty() {
                 continue;
             }
+            // NaN marks what the circle itself determines.
             if !found.vars.iter().all(|u| !values[u.index()].is_nan()) {
                 continue;
             }
@@ -55,7 +66,7 @@ fn decide_conditions(draft: &mut DaeDraft, before: &[VarId], members: &[VarId]) 
                 fix(draft, &found.vars);
             }
         }
-        // one at a time, from outside: what is chosen may hold further ones
+        // One `if` at a time, from outside: the branch that is dropped may contain others that do not matter any more.
         if let Some(&first) = chosen.iter().find(|(e, _)| *e == binding).or(chosen.last()) {
             draft.variables[v.index()].binding = Some(draft.exprs.substitute(binding, &[first]));
             decided = true;
@@ -64,6 +75,7 @@ fn decide_conditions(draft: &mut DaeDraft, before: &[VarId], members: &[VarId]) 
     decided
 }
 
+/// The bound parameters in order of evaluation, with what their bindings use. `Err` is the first circle.
 fn sorted_parameters(draft: &DaeDraft) -> Result<(BindingUses, Vec<VarId>), BindingCycle> {
     let bound = draft.with_role(SystemRole::Parameter);
     let mut position = vec![u32::MAX; draft.variables.len()];
@@ -86,10 +98,12 @@ fn sorted_parameters(draft: &DaeDraft) -> Result<(BindingUses, Vec<VarId>), Bind
     Ok((uses, before))
 }
 
-/// Moves dependents of free parameters to the free ones.
+/// Removes from the order the parameters that depend on free ones and makes them free, with their bindings as initial
+/// equations.
 fn without_free(draft: &mut DaeDraft, uses: &BindingUses, order: Vec<VarId>) -> Vec<VarId> {
     let mut kept = Vec::with_capacity(order.len());
     for v in order {
+        // The order makes this transitive: what a binding uses has been decided before.
         if !uses.of_variable(v).iter().any(|u| draft.role(*u) == SystemRole::FreeParameter) {
             kept.push(v);
             continue;
@@ -104,13 +118,16 @@ fn without_free(draft: &mut DaeDraft, uses: &BindingUses, order: Vec<VarId>) -> 
     kept
 }
 
-/// The variables that each binding uses.
+/// The variables that each binding uses, by variable.
 struct BindingUses {
+    /// Where the entries of each variable begin in `used`, and one more for the end.
     starts: Vec<u32>,
+    /// The variables used, one binding after the other.
     used: Vec<VarId>,
 }
 
 impl BindingUses {
+    /// Collects the uses of all bound parameters.
     fn of(draft: &DaeDraft) -> Self {
         let mut found = BindingUses { starts: Vec::with_capacity(draft.variables.len() + 1), used: Vec::new() };
         let mut walk = bramah_expr::visit::NodeTraversal::default();
@@ -129,12 +146,14 @@ impl BindingUses {
         found
     }
 
+    /// What the binding of a variable uses; empty for what is no bound parameter.
     fn of_variable(&self, v: VarId) -> &[VarId] {
         &self.used[self.starts[v.index()] as usize..self.starts[v.index() + 1] as usize]
     }
 }
 
-/// Fixes parameters with the structure, and all that they are computed from.
+/// Fixes parameters with the structure, and everything that they are computed from: they become constants, so that a
+/// run cannot change them.
 pub(super) fn fix(draft: &mut DaeDraft, parameters: &[VarId]) {
     let mut open = parameters.to_vec();
     while let Some(v) = open.pop() {
@@ -147,7 +166,8 @@ pub(super) fn fix(draft: &mut DaeDraft, parameters: &[VarId]) {
     }
 }
 
-/// The values of all parameters as they stand in the model; 0 where there is none (flatten has reported that).
+/// By variable: the value of a parameter as it stands in the model, NaN for other variables. A parameter without
+/// binding and start has the default of its type; the flattening has reported that. `order` is that of [`order`].
 pub(super) fn values(draft: &DaeDraft, order: &[VarId]) -> Vec<f64> {
     let mut values = vec![f64::NAN; draft.variables.len()];
     let mut evaluation = bramah_expr::eval::EvaluationCache::default();
@@ -165,8 +185,8 @@ pub(super) fn values(draft: &DaeDraft, order: &[VarId]) -> Vec<f64> {
     values
 }
 
-/// Parameters whose value is no number (E217) or lies outside their range (E215); a value that is only passed on is reported
-/// where it comes from.
+/// Parameters whose value is no finite number (E217) or lies outside their range (E215). A wrong value that other
+/// parameters only pass on is reported once, where it comes from.
 pub(super) fn check(draft: &DaeDraft, order: &[VarId], values: &[f64]) -> Vec<Diagnostic> {
     let mut wrong = vec![false; draft.variables.len()];
     let mut reported = Vec::new();
@@ -184,7 +204,8 @@ pub(super) fn check(draft: &DaeDraft, order: &[VarId], values: &[f64]) -> Vec<Di
     reported
 }
 
-/// A value below `min` or above `max`, without its place.
+/// The message about a value below `low` or above `high`, without its place. `None` where the value is in range or the
+/// bounds are not known.
 pub fn out_of_range(variable: &FlatVariable, value: f64, low: Option<f64>, high: Option<f64>) -> Option<Diagnostic> {
     let bound = match (low, high) {
         (Some(low), _) if value < low => format!("less than its `min`, {low}"),
@@ -195,9 +216,11 @@ pub fn out_of_range(variable: &FlatVariable, value: f64, low: Option<f64>, high:
     Some(Diagnostic::new(Code::OutOfRange, format!("`{}` is {value}{unit}, {bound}{unit}", variable.name)))
 }
 
+/// The diagnostic about one parameter, if its value is wrong.
 fn check_one(draft: &DaeDraft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     let variable = &draft.variables[v.index()];
     let value = values[v.index()];
+    // The value of a bound or binding, if all parameters in it are finite.
     let known = |e: ExprId| {
         if let Some(number) = draft.exprs.as_num(e) {
             return Some(number);
@@ -211,6 +234,7 @@ fn check_one(draft: &DaeDraft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
         })
     };
     if !value.is_finite() {
+        // Where the binding reads a parameter that is not finite, that one is reported instead.
         let binding = variable.binding.filter(|&b| known(b).is_some_and(|x| !x.is_finite()))?;
         let message = format!("`{}` = `{}` is not a finite number", variable.name, draft.text(binding));
         let used: Vec<String> = draft
@@ -233,7 +257,7 @@ fn check_one(draft: &DaeDraft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     let mut made = out_of_range(variable, value, low, high)?;
     let holder = &draft.instances[variable.origin.instance as usize];
     if variable.origin.instance != 0 {
-        // the component of the model that was given: what holds the value may stand in the library
+        // Point at the component in the user's model: the one with the value may be inside a library.
         let mut outermost = holder;
         while outermost.parent != 0 {
             outermost = &draft.instances[outermost.parent as usize];
@@ -246,56 +270,69 @@ fn check_one(draft: &DaeDraft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     )
 }
 
-/// The start value of a type when none is given.
+/// The start value of a type when none is given: the first literal (numbered 1) of an enumeration, else 0.
 pub(super) fn default_start(ty: ScalarType) -> f64 {
     if matches!(ty, ScalarType::Enumeration(_)) { 1.0 } else { 0.0 }
 }
 
-/// What is known about the value of an expression.
+/// What is known about the sign of an expression, for all values of the unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ValueSign {
+    /// Nothing.
     Unknown,
+    /// Greater than 0.
     Positive,
+    /// Less than 0.
     Negative,
+    /// 0 or greater.
     NotNegative,
+    /// 0 or less.
     NotPositive,
+    /// Of either sign, but not 0.
     NotZero,
 }
 
-/// Signs and parameter values of all nodes of a growing pool.
+/// Signs and parameter values of all nodes of a pool. The pool may grow: new nodes are evaluated when they are asked
+/// for.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SignAnalysis {
+    /// By variable: the value of a parameter, else NaN.
     variables: Vec<f64>,
-    /// Signs of variables that have no known value.
+    /// By variable: the sign where the value is not known.
     signs_of: Vec<ValueSign>,
+    /// By node: its value, or NaN where it depends on more than parameters.
     values: Vec<f64>,
+    /// By node: its sign.
     signs: Vec<ValueSign>,
 }
 
 impl SignAnalysis {
-    /// From the parameters' values; NaN for all other variables.
+    /// Starts from the parameters' values; NaN for all other variables. Signs of variables are derived from their
+    /// equations.
     pub fn new(draft: &DaeDraft, variables: Vec<f64>) -> Self {
         let signs_of = variable_signs(draft, &variables);
         SignAnalysis { variables, signs_of, ..SignAnalysis::default() }
     }
 
-    /// The value of an expression of parameters.
+    /// The value of an expression of parameters; `None` where it is not known before the run.
     pub fn value(&mut self, pool: &Exprs, e: ExprId) -> Option<f64> {
         self.extend(pool);
         Some(self.values[e.index()]).filter(|v| !v.is_nan())
     }
 
-    /// The value of a parameter.
+    /// The value of a parameter; `None` for other variables.
     pub fn value_of(&self, v: VarId) -> Option<f64> {
         self.variables.get(v.index()).copied().filter(|value| !value.is_nan())
     }
 
-    /// True when an expression cannot vanish, whatever variables and time are, with the parameters as they are.
+    /// True when an expression cannot vanish, whatever variables and time are, with the parameters as they are. False
+    /// means that it may vanish.
     pub fn is_nonzero(&mut self, pool: &Exprs, e: ExprId) -> bool {
         self.extend(pool);
         matches!(self.signs[e.index()], ValueSign::Positive | ValueSign::Negative | ValueSign::NotZero)
     }
 
+    /// Evaluates the nodes that were added to the pool since the last call.
     fn extend(&mut self, pool: &Exprs) {
         for i in self.values.len()..pool.len() {
             let e = ExprId(i as u32);
@@ -306,6 +343,7 @@ impl SignAnalysis {
         }
     }
 
+    /// The value of a node from those of its arguments; NaN where it is not known.
     fn node_value(&self, pool: &Exprs, e: ExprId) -> f64 {
         let node = pool.node(e);
         let operands = pool.operands(e);
@@ -314,17 +352,19 @@ impl SignAnalysis {
         match node {
             ExprNode::Num(bits) => f64::from_bits(bits),
             ExprNode::Var(v) => self.variables.get(v.index()).copied().unwrap_or(f64::NAN),
+            // With a known condition the other branch need not be known.
             ExprNode::If(c, a, b) if !self.values[c.index()].is_nan() => {
                 self.values[if self.values[c.index()] == 0.0 { b } else { a }.index()]
             }
             ExprNode::Sample(..) => f64::NAN,
+            // A delayed constant is the constant.
             ExprNode::Delay(a, _) => self.values[a.index()],
             _ if known => self.combined(pool, e),
             _ => f64::NAN,
         }
     }
 
-    /// The value of a node of which all arguments are known.
+    /// The value of a node whose arguments are all known.
     fn combined(&self, pool: &Exprs, e: ExprId) -> f64 {
         let leaf = |node: ExprNode| match node {
             ExprNode::Var(v) => self.variables.get(v.index()).copied().unwrap_or(f64::NAN),
@@ -337,6 +377,7 @@ impl SignAnalysis {
         }
     }
 
+    /// The sign of a node whose value is not known, from the signs of its arguments.
     fn node_sign(&self, pool: &Exprs, e: ExprId) -> ValueSign {
         use bramah_expr::{BinaryFunction, UnaryFunction};
         let of = |a: ExprId| self.signs[a.index()];
@@ -354,6 +395,7 @@ impl SignAnalysis {
             ExprNode::Binary(op, a, b) => match op {
                 BinaryFunction::Add => sum(of(a), of(b)),
                 BinaryFunction::Sub => sum(of(a), opposite(of(b))),
+                // A square, even of something of unknown sign.
                 BinaryFunction::Mul if a == b => {
                     if nonzero(of(a)) {
                         ValueSign::Positive
@@ -361,8 +403,8 @@ impl SignAnalysis {
                         ValueSign::NotNegative
                     }
                 }
-                // A quotient of something that is not 0 is not 0 either, unless it overflows.
-                // what is divided by Modelica.Constants.inf is nothing
+                // A quotient by `Modelica.Constants.inf` counts as 0. Any other quotient of something that is not 0 is
+                // not 0 either, unless it underflows.
                 BinaryFunction::Div if self.values[b.index()].abs() >= INFINITE => ValueSign::NotNegative,
                 BinaryFunction::Mul | BinaryFunction::Div => product(of(a), of(b)),
                 BinaryFunction::Pow => self.power(of(a), b),
@@ -383,7 +425,7 @@ impl SignAnalysis {
         }
     }
 
-    /// log(1 + something that is not negative), as in a softplus.
+    /// The sign of a logarithm of the form `log(1 + x)` with `x` not negative, as in a softplus function.
     fn logarithm(&self, pool: &Exprs, e: ExprId) -> ValueSign {
         let ExprNode::Binary(bramah_expr::BinaryFunction::Add, a, b) = pool.node(e) else { return ValueSign::Unknown };
         let beyond = |one: ExprId, rest: ExprId| match self.signs[rest.index()] {
@@ -393,6 +435,7 @@ impl SignAnalysis {
         if beyond(a, b) == ValueSign::Unknown { beyond(b, a) } else { beyond(a, b) }
     }
 
+    /// The sign of a power. A known even exponent makes any base but 0 positive.
     fn power(&self, base: ValueSign, exponent: ExprId) -> ValueSign {
         let even = self.values[exponent.index()] % 2.0 == 0.0;
         match base {
@@ -405,13 +448,14 @@ impl SignAnalysis {
     }
 }
 
-/// Modelica.Constants.inf.
+/// The value of `Modelica.Constants.inf`. Divisors of this size or more count as infinite.
 const INFINITE: f64 = 1e60;
 
-/// Variables are followed through so many definitions.
+/// How many definitions are followed to find the sign of a variable.
 const DEPTH: usize = 4;
 
-/// Signs of variables: of those that stand still, and of those that an equation sets equal to something of known sign.
+/// By variable: the sign of variables that stay constant, and of variables that an equation sets equal to an expression
+/// of known sign.
 fn variable_signs(draft: &DaeDraft, values: &[f64]) -> Vec<ValueSign> {
     let mut known = SignAnalysis { variables: values.to_vec(), ..SignAnalysis::default() };
     let mut signs = vec![ValueSign::Unknown; draft.variables.len()];
@@ -427,6 +471,7 @@ fn variable_signs(draft: &DaeDraft, values: &[f64]) -> Vec<ValueSign> {
             _ => {}
         }
     }
+    // Each round carries signs through one more definition.
     for _ in 0..DEPTH {
         known = SignAnalysis { variables: known.variables, signs_of: signs.clone(), ..SignAnalysis::default() };
         known.extend(&draft.exprs);
@@ -442,8 +487,8 @@ fn variable_signs(draft: &DaeDraft, values: &[f64]) -> Vec<ValueSign> {
     signs
 }
 
-/// The value of a variable with derivative 0 that starts from a fixed value, is never reinitialized, and is not 0: that
-/// may be another one in the next run, but hardly of another sign.
+/// The value of a variable with derivative 0 that starts from a fixed value and is never reinitialized. `None` for
+/// others, and for 0. Another run may give it another value, but hardly one of another sign.
 fn steady_value(draft: &DaeDraft, v: VarId, known: &mut SignAnalysis) -> Option<f64> {
     let variable = &draft.variables[v.index()];
     let reinitialized = || draft.actions.iter().any(|a| matches!(a.kind, EventActionKind::Reinit(w, _) if w == v));
@@ -451,6 +496,7 @@ fn steady_value(draft: &DaeDraft, v: VarId, known: &mut SignAnalysis) -> Option<
     known.value(&draft.exprs, start).filter(|value| *value != 0.0)
 }
 
+/// The sign of a number. 0 counts as not negative.
 fn sign_of(value: f64) -> ValueSign {
     if value > 0.0 {
         ValueSign::Positive
@@ -461,18 +507,22 @@ fn sign_of(value: f64) -> ValueSign {
     }
 }
 
+/// Whether a sign excludes 0.
 fn nonzero(s: ValueSign) -> bool {
     matches!(s, ValueSign::Positive | ValueSign::Negative | ValueSign::NotZero)
 }
 
+/// Whether a sign excludes negative values.
 fn not_negative(s: ValueSign) -> bool {
     matches!(s, ValueSign::Positive | ValueSign::NotNegative)
 }
 
+/// Whether a sign excludes positive values.
 fn not_positive(s: ValueSign) -> bool {
     matches!(s, ValueSign::Negative | ValueSign::NotPositive)
 }
 
+/// The sign of the negative.
 fn opposite(s: ValueSign) -> ValueSign {
     match s {
         ValueSign::Positive => ValueSign::Negative,
@@ -483,6 +533,7 @@ fn opposite(s: ValueSign) -> ValueSign {
     }
 }
 
+/// The sign of a sum.
 fn sum(a: ValueSign, b: ValueSign) -> ValueSign {
     let strict = nonzero(a) || nonzero(b);
     if not_negative(a) && not_negative(b) {
@@ -494,6 +545,7 @@ fn sum(a: ValueSign, b: ValueSign) -> ValueSign {
     }
 }
 
+/// The sign of a product or quotient.
 fn product(a: ValueSign, b: ValueSign) -> ValueSign {
     let same = not_negative(a) && not_negative(b) || not_positive(a) && not_positive(b);
     let other = not_negative(a) && not_positive(b) || not_positive(a) && not_negative(b);
@@ -507,6 +559,7 @@ fn product(a: ValueSign, b: ValueSign) -> ValueSign {
     }
 }
 
+/// The sign of an expression that has one of two values.
 fn either(a: ValueSign, b: ValueSign) -> ValueSign {
     if a == b {
         a

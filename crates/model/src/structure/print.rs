@@ -1,4 +1,6 @@
 //! The sorted systems as text, for `check --emit` and for tests.
+//!
+//! The text uses the names of variables as the user wrote them. It is for readers and is not parsed anywhere.
 
 use super::{AlgebraicLoop, BltBlock, Dae, ExplicitAssignment, Unknown};
 use bramah_expr::{ExprId, VarId};
@@ -10,7 +12,7 @@ impl Dae {
         &self.variables[v.index()].name
     }
 
-    /// An unknown as the user would write it.
+    /// An unknown as the user would write it: a name, or `der(name)`.
     pub fn unknown_name(&self, unknown: Unknown) -> String {
         match unknown {
             Unknown::Var(v) => self.name(v).to_owned(),
@@ -18,12 +20,12 @@ impl Dae {
         }
     }
 
-    /// An expression with the variables' names.
+    /// An expression with the names of variables.
     pub fn text(&self, e: ExprId) -> String {
         self.exprs.print(e, &|v| self.name(v).to_owned())
     }
 
-    /// One of the sorted systems, a line for each assignment; loops are indented.
+    /// One of the sorted systems: a line for each assignment, with the parts of loops indented.
     pub fn blocks_text(&self, blocks: &[BltBlock]) -> String {
         let mut out = String::new();
         self.write_blocks(blocks, 0, &mut out);
@@ -44,7 +46,7 @@ impl Dae {
         out
     }
 
-    /// Everything: [`Dae::blt_text`], the event and the initial system.
+    /// All of it: [`Dae::blt_text`], then the event and the initial system.
     pub fn dae_text(&self) -> String {
         let mut out = self.blt_text();
         line(&mut out, 0, "event:");
@@ -54,6 +56,7 @@ impl Dae {
         out
     }
 
+    /// Appends blocks at an indentation of `depth` levels.
     fn write_blocks(&self, blocks: &[BltBlock], depth: usize, out: &mut String) {
         for block in blocks {
             match block {
@@ -70,10 +73,12 @@ impl Dae {
         }
     }
 
+    /// Appends one assignment.
     fn write_assign(&self, assign: &ExplicitAssignment, depth: usize, out: &mut String) {
         line(out, depth, &format!("{} := {}", self.unknown_name(assign.unknown), self.text(assign.value)));
     }
 
+    /// Appends a loop: its tearing variables, then its assignments, then its residuals.
     fn write_loop(&self, found: &AlgebraicLoop, depth: usize, out: &mut String) {
         let names: Vec<String> = found.tearing.iter().map(|&u| self.unknown_name(u)).collect();
         let kind = if found.linear { "linear" } else { "nonlinear" };
@@ -87,6 +92,7 @@ impl Dae {
     }
 }
 
+/// Appends a line with an indentation of two spaces for each level.
 fn line(out: &mut String, depth: usize, text: &str) {
     writeln!(out, "{:1$}{text}", "", 2 * depth).expect("writing to a string works");
 }

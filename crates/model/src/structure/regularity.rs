@@ -1,7 +1,8 @@
-//! Whether the equations can determine the unknowns at all, before anything is differentiated.
+//! Structural regularity: whether the equations can determine the unknowns at all, before anything is differentiated.
 //!
-//! A variable and its derivatives count as one unknown here: if that system has no perfect matching, no amount of
-//! differentiation helps, and the over- and under-determined parts say why.
+//! A variable and its derivatives count as one unknown here. If that system has no perfect matching, no differentiation
+//! helps, and Pantelides' algorithm would not end. The over- and underdetermined parts then say what is wrong.
+//! `analysis` calls [`check`] before index reduction; `messages` turns the result into a diagnostic.
 
 use super::discrete::lone_unknowns;
 use super::draft::{DaeDraft, EquationRole, SystemRole};
@@ -10,23 +11,27 @@ use super::incidence::{IncidenceMatrix, IncidenceScanner, NONE};
 use super::matching::{Matching, maximum};
 use bramah_expr::{ExprNode, VarId};
 
-/// The whole system with one column for each chain of derivatives.
+/// All continuous and discrete equations with one column for each chain of derivatives.
 pub(super) struct SystemOverview {
-    /// The lowest variable of each column's chain.
+    /// By column: the lowest variable of its chain.
     pub columns: Vec<VarId>,
-    /// By variable.
+    /// By variable: its column, or [`NONE`] for what is no unknown.
     of_var: Vec<u32>,
+    /// The columns of each equation. Rows have the numbers of `DaeDraft::equations`.
     pub incidence: IncidenceMatrix,
+    /// A maximum matching.
     pub matching: Matching,
 }
 
-/// What is wrong with a system that is not regular.
+/// A system that is not regular, with its decomposition.
 pub(super) struct StructuralSingularity {
+    /// The system.
     pub overview: SystemOverview,
+    /// Its over- and underdetermined parts.
     pub parts: CoarseDecomposition,
 }
 
-/// Checks the system of all continuous and discrete equations.
+/// Checks the system of all continuous and discrete equations. `Ok` if it has a perfect matching.
 pub(super) fn check(draft: &DaeDraft) -> Result<(), Box<StructuralSingularity>> {
     let overview = SystemOverview::new(draft);
     let complete = |partners: &[u32]| partners.iter().all(|&p| p != NONE);
@@ -38,6 +43,7 @@ pub(super) fn check(draft: &DaeDraft) -> Result<(), Box<StructuralSingularity>> 
 }
 
 impl SystemOverview {
+    /// Numbers the columns, scans the equations and matches them.
     fn new(draft: &DaeDraft) -> Self {
         let mut made = SystemOverview {
             columns: Vec::new(),
@@ -51,6 +57,7 @@ impl SystemOverview {
         made
     }
 
+    /// Gives a column to each chain of variables that are derivatives of each other.
     fn number_columns(&mut self, draft: &DaeDraft) {
         let mut integral = vec![NONE; draft.variables.len()];
         for (i, link) in draft.derivative.iter().enumerate() {
@@ -60,6 +67,7 @@ impl SystemOverview {
         }
         for i in 0..draft.variables.len() {
             let unknown = matches!(draft.roles[i], SystemRole::Continuous | SystemRole::Discrete);
+            // A variable that is the derivative of another belongs to the chain of that one.
             if !unknown || integral[i] != NONE {
                 continue;
             }
@@ -73,10 +81,12 @@ impl SystemOverview {
         }
     }
 
+    /// Makes the rows of the incidence matrix.
     fn scan(&mut self, draft: &DaeDraft) {
         let mut scanner = IncidenceScanner::default();
         let of_var = &self.of_var;
         let column = |node: ExprNode| match node {
+            // A variable and its derivative have the same column.
             ExprNode::Var(v) | ExprNode::Der(v) => Some(of_var[v.index()]).filter(|&c| c != NONE),
             _ => None,
         };

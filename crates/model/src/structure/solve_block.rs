@@ -1,4 +1,8 @@
 //! One component of a sorted system as a [`BltBlock`]: explicit where that is safe, else a torn loop.
+//!
+//! Enters: the equations of a strongly connected component with their unknowns. Leaves: an assignment if there is one
+//! equation whose coefficient cannot vanish, else an algebraic loop with tearing variables. `sorting` calls
+//! [`BlockSolver`].
 
 use super::draft::DaeDraft;
 use super::parameters::SignAnalysis;
@@ -11,37 +15,46 @@ use rustc_hash::FxHashMap;
 /// How an equation can be solved for an unknown.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum EquationSolvability {
-    /// By this value, always; `gentle` when the coefficient is plus or minus one, `switched` when it changes with a mode.
+    /// Symbolically, by `value`, for all values of the other quantities. `gentle` if the coefficient is plus or minus
+    /// one, `switched` if it contains an `if`.
     Explicit { value: ExprId, gentle: bool, switched: bool },
-    /// It is affine, but the coefficient may vanish.
+    /// It is affine in the unknown, but the coefficient may vanish.
     Affine,
-    /// Not affine.
+    /// It is not affine in the unknown.
     No,
 }
 
-/// Solves equations and remembers the outcome, since the systems share most equations.
+/// Solves equations and remembers the outcome, since the three systems share most equations.
 pub(super) struct BlockSolver<'a> {
+    /// The system; new expressions go into its pool.
     pub draft: &'a mut DaeDraft,
+    /// Tells which coefficients cannot vanish.
     pub known: &'a mut SignAnalysis,
+    /// The outcomes, by both sides and the unknown.
     found: FxHashMap<(ExprId, ExprId, Unknown), EquationSolvability>,
 }
 
-/// An equation of a component with its number and its unknowns.
+/// An equation of a component.
 #[derive(Clone, Debug)]
 pub(super) struct BlockEquation {
+    /// The equation.
     pub equation: FlatEquation,
+    /// Its number in the draft.
     pub index: u32,
-    /// Columns of the component that occur in it; the first `solvable` ones can be solved for in principle.
+    /// Columns of the component that occur in it. The first `solvable` ones can be solved for in principle.
     pub columns: Vec<u32>,
+    /// How many of `columns` the equation can be solved for.
     pub solvable: usize,
 }
 
 impl<'a> BlockSolver<'a> {
+    /// A solver that has solved nothing yet.
     pub fn new(draft: &'a mut DaeDraft, known: &'a mut SignAnalysis) -> Self {
         BlockSolver { draft, known, found: FxHashMap::default() }
     }
 
-    /// The block of one equation for one unknown.
+    /// The block of one equation for one unknown: an assignment, or a loop with that unknown as its only tearing
+    /// variable.
     pub fn single(&mut self, equation: &FlatEquation, index: u32, unknown: Unknown) -> BltBlock {
         match self.solve(equation, unknown) {
             EquationSolvability::Explicit { value, .. } => {
@@ -60,20 +73,22 @@ impl<'a> BlockSolver<'a> {
         }
     }
 
-    /// The other side of a discrete equation.
+    /// A discrete equation as an assignment: the unknown is one of its sides, the value is the other.
     pub fn discrete(&mut self, equation: &FlatEquation, index: u32, unknown: Unknown) -> ExplicitAssignment {
         let leaf = self.leaf(unknown);
         let value = if equation.lhs == leaf { equation.rhs } else { equation.lhs };
         ExplicitAssignment { unknown, value, equation: index }
     }
 
-    /// The torn loop of several equations; `columns` are their unknowns, as many as members.
+    /// The torn loop of several equations. `columns` are their unknowns, as many as members; `unknowns` has the unknown
+    /// of every column of the system.
     ///
-    /// In a nonlinear loop only equations with a coefficient of plus or minus one are solved: the integrator finds the
-    /// iteration variables to its tolerance, and dividing by a small coefficient would multiply that error. For the same
-    /// reason no loop is solved by a coefficient that switches, as those of ideal diodes do between 1 and 1e-5: pivoting
-    /// has to follow the modes.
+    /// In a nonlinear loop only equations with a coefficient of plus or minus one are solved. Newton's method finds the
+    /// tearing variables to a tolerance, and a division by a small coefficient would multiply that error. For the same
+    /// reason no equation of any loop is solved by a coefficient that switches, as those of ideal diodes do between 1
+    /// and 1e-5: the pivots have to follow the modes.
     pub fn torn(&mut self, members: &[BlockEquation], columns: &[u32], unknowns: &[Unknown]) -> BltBlock {
+        // Tearing numbers columns within the loop.
         let local: FxHashMap<u32, u32> = columns.iter().enumerate().map(|(i, &c)| (c, i as u32)).collect();
         let unknown = |c: u32| unknowns[columns[c as usize] as usize];
         let linear = self.is_linear(members, columns, unknowns);
@@ -116,7 +131,9 @@ impl<'a> BlockSolver<'a> {
         })
     }
 
-    /// Derivatives cost the integrator nothing as iteration variables; a given start helps Newton's method.
+    /// How suitable an unknown is as a tearing variable; larger is better. Derivatives cost the integrator nothing as
+    /// iteration variables. A given start helps Newton's method. A variable that is not hidden counts a little more
+    /// than a hidden one.
     fn liking(&self, unknown: Unknown) -> u32 {
         match unknown {
             Unknown::Der(_) => 4,
@@ -127,6 +144,7 @@ impl<'a> BlockSolver<'a> {
         }
     }
 
+    /// The expression that stands for an unknown.
     fn leaf(&mut self, unknown: Unknown) -> ExprId {
         match unknown {
             Unknown::Var(v) => self.draft.exprs.var(v),
@@ -134,6 +152,7 @@ impl<'a> BlockSolver<'a> {
         }
     }
 
+    /// How an equation can be solved for an unknown.
     fn solve(&mut self, equation: &FlatEquation, unknown: Unknown) -> EquationSolvability {
         let key = (equation.lhs, equation.rhs, unknown);
         if let Some(&known) = self.found.get(&key) {
@@ -155,6 +174,7 @@ impl<'a> BlockSolver<'a> {
         solved
     }
 
+    /// Whether all members are affine in all unknowns of the loop together.
     fn is_linear(&self, members: &[BlockEquation], columns: &[u32], unknowns: &[Unknown]) -> bool {
         let set: rustc_hash::FxHashSet<Unknown> = columns.iter().map(|&c| unknowns[c as usize]).collect();
         let pool = &self.draft.exprs;
@@ -169,8 +189,10 @@ impl<'a> BlockSolver<'a> {
     }
 }
 
-/// Whether both expressions are affine in all leaves for which `is_unknown` says true, together.
+/// Whether both expressions are affine in all leaves for which `is_unknown` is true, together. Products of two
+/// unknowns, conditions that read one, and functions of one are not.
 fn is_affine(pool: &Exprs, sides: [ExprId; 2], is_unknown: impl Fn(ExprNode) -> bool) -> bool {
+    // `reachable` lists arguments before nodes, so one pass suffices.
     let mut holds: rustc_hash::FxHashSet<ExprId> = rustc_hash::FxHashSet::default();
     for e in pool.reachable(&sides, |_| true) {
         let node = pool.node(e);

@@ -1,5 +1,9 @@
-//! Derivatives that only initial equations ask for, as `der(y) = 0` of a `y` that is no state: unknowns of the start, each
-//! determined by the derivative of the equation that determines its variable. The running system does without them.
+//! Derivatives that only initial equations contain, as `der(y) = 0` of a `y` that is no state.
+//!
+//! Such a derivative is an unknown of the start. It is determined by the time derivative of the equation that
+//! determines its variable; that may need further derivatives. Enters: the running system. Leaves: a copy with these
+//! unknowns and equations, for the initial system only; the run does not compute them. `analysis` calls [`add`] before
+//! `initial`.
 
 use super::draft::{DaeDraft, EquationRole, SystemRole};
 use super::incidence::{IncidenceScanner, NONE};
@@ -11,10 +15,8 @@ use bramah_expr::{ExprId, Exprs, VarId};
 use bramah_syntax::diag::Diagnostic;
 use rustc_hash::FxHashMap;
 
-/// The running system with these derivatives; nothing where there are none. Initial equations refer to them afterwards.
-///
-/// # Errors
-/// What cannot be differentiated (E304).
+/// The running system with the derivatives that initial equations ask for. `None` where they ask for none. The initial
+/// equations are rewritten in terms of the new variables.
 pub(super) fn add(
     draft: &mut DaeDraft,
     running: &EquationSystem,
@@ -28,6 +30,7 @@ pub(super) fn add(
     for &v in &asked {
         derivatives.of(draft, Unknown::Var(v));
     }
+    // The list only grows by unknowns without a derivative, and each gets one at most, so this ends.
     while let Some(unknown) = derivatives.open.pop() {
         derivatives.determine(draft, unknown)?;
     }
@@ -44,26 +47,31 @@ pub(super) fn add(
     Ok(Some(derivatives.extended(draft)))
 }
 
-/// Unknowns that are no states and whose derivatives stand in initial equations.
+/// Continuous unknowns that are no states and whose derivatives occur in initial equations.
 fn asked_for(draft: &DaeDraft, states: &[VarId]) -> Vec<VarId> {
     let sides = draft.initial_equations.iter().flat_map(|e| [e.lhs, e.rhs]).collect::<Vec<_>>();
     let asked = draft.exprs.dependencies(&sides).ders;
     asked.into_iter().filter(|v| draft.role(*v) == SystemRole::Continuous && states.binary_search(v).is_err()).collect()
 }
 
+/// The derivatives made so far.
 struct StartDerivatives<'a> {
+    /// The system that determines the unknowns.
     running: &'a EquationSystem,
+    /// The columns of that system.
     columns: UnknownColumns,
-    /// The derivatives of unknowns, as variables.
+    /// By unknown: the variable that is its time derivative.
     made: FxHashMap<Unknown, VarId>,
-    /// Unknowns whose derivatives are not determined yet.
+    /// Unknowns whose derivatives have a variable but no equation yet.
     open: Vec<Unknown>,
+    /// The differentiator.
     time_derivative: TimeDerivative,
-    /// The rows, with the variables that they determine.
+    /// The new equations, each with the variable that it determines.
     rows: Vec<(SystemRow, VarId)>,
 }
 
 impl<'a> StartDerivatives<'a> {
+    /// Nothing asked for yet.
     fn new(running: &'a EquationSystem, variables: usize) -> Self {
         StartDerivatives {
             running,
@@ -75,7 +83,8 @@ impl<'a> StartDerivatives<'a> {
         }
     }
 
-    /// The derivative of an unknown of the running system.
+    /// Makes a variable for the derivative of an unknown, if the unknown belongs to the running system and has none
+    /// yet.
     fn of(&mut self, draft: &mut DaeDraft, unknown: Unknown) {
         if self.columns.of(unknown).is_none() || self.made.contains_key(&unknown) {
             return;
@@ -90,7 +99,8 @@ impl<'a> StartDerivatives<'a> {
         self.open.push(unknown);
     }
 
-    /// Differentiates the equation that determines an unknown.
+    /// Differentiates the equation that determines an unknown, and asks for all derivatives that the result contains.
+    /// `Err` where the equation reads an input (E304).
     fn determine(&mut self, draft: &mut DaeDraft, unknown: Unknown) -> Result<(), Diagnostic> {
         let column = self.columns.of(unknown).expect("only unknowns of the running system are asked for");
         let row = self.running.matching.row_of[column as usize];
@@ -114,6 +124,7 @@ impl<'a> StartDerivatives<'a> {
         Ok(())
     }
 
+    /// The time derivative of an expression in terms of the new variables.
     fn differentiated(&mut self, draft: &mut DaeDraft, e: ExprId) -> ExprId {
         let (made, columns, links) = (&self.made, &self.columns, &draft.derivative);
         let mut leaf = |pool: &mut Exprs, leaf: DerivativeLeaf| {
@@ -123,7 +134,9 @@ impl<'a> StartDerivatives<'a> {
             };
             Some(match (made.get(&unknown), leaf) {
                 (Some(d), _) => pool.var(*d),
+                // The derivative of a state is an unknown of the running system.
                 (None, DerivativeLeaf::Var(v)) if columns.of(Unknown::Der(v)).is_some() => pool.der(v),
+                // A state with a variable as its derivative, or what is constant: a parameter or a discrete variable.
                 (None, DerivativeLeaf::Var(v)) => links[v.index()].map_or(Exprs::ZERO, |w| w.expression(pool)),
                 (None, DerivativeLeaf::Der(_)) => Exprs::ZERO,
             })
@@ -131,7 +144,7 @@ impl<'a> StartDerivatives<'a> {
         self.time_derivative.derive(&mut draft.exprs, e, &mut leaf).expect("every leaf has an answer")
     }
 
-    /// The running system with the rows made.
+    /// A copy of the running system with the new rows and columns, matched with each other.
     fn extended(self, draft: &DaeDraft) -> EquationSystem {
         let mut system = self.running.clone();
         system.columns.extend(self.rows.iter().map(|(_, v)| Unknown::Var(*v)));

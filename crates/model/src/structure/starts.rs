@@ -1,14 +1,16 @@
-//! How a start value is spoken of: the parameter that gives it, the modifier that frees it.
+//! Start values in messages: the parameter that gives one, and the modifier that frees it.
+//!
+//! `messages` and the later crates use these to advise the user what to change.
 
 use crate::flat::FlatVariable;
 use bramah_expr::{ExprNode, Exprs, VarId};
 
 /// The parameter that a user would change to change the start of `v`: the end of the chain of parameters that are each
-/// bound to the next. `None` where the start is a number or a formula.
+/// bound to the next. `None` where the start is missing, a number or a formula.
 pub fn parameter_behind<'a>(exprs: &Exprs, variables: &'a [FlatVariable], v: VarId) -> Option<&'a str> {
     let mut next = variables[v.index()].start;
     let mut found = None;
-    // parameters in a circle have been refused long before, but this must end in any case
+    // Circles of parameters are refused earlier, but this loop must end in any case.
     for _ in 0..variables.len() {
         let Some(ExprNode::Var(p)) = next.map(|e| exprs.node(e)) else { break };
         found = Some(variables[p.index()].name.as_str());
@@ -17,7 +19,8 @@ pub fn parameter_behind<'a>(exprs: &Exprs, variables: &'a [FlatVariable], v: Var
     found
 }
 
-/// `cylinder(piston(s(fixed = false)))` for `cylinder.piston.s`; `None` inside arrays, whose elements differ.
+/// The modifier that sets `fixed` of a variable: `cylinder(piston(s(fixed = false)))` for `cylinder.piston.s`. `None`
+/// inside arrays, where a modifier would change all elements.
 pub fn modifier(name: &str, fixed: bool) -> Option<String> {
     if name.contains('[') {
         return None;

@@ -1,33 +1,37 @@
 //! Tearing of algebraic loops: which unknowns to guess so that the others follow one by one.
 //!
-//! Greedy after Cellier: as long as an equation has one open unknown that it can safely be solved for, it determines
-//! that unknown; when none has, the unknown that opens most equations is guessed. An equation whose unknowns are all
-//! known becomes a residual. Long chains are cut by further guesses: following a ladder from one end to the other
-//! multiplies errors at every rung.
+//! Enters: a loop as a bipartite graph. Leaves: tearing variables, explicit equations in order, and residuals.
+//! `solve_block` calls [`tear`]. A minimal set of tearing variables is NP-hard to find, so this is a greedy heuristic
+//! after F. E. Cellier and E. Kofman (Continuous System Simulation, 2006): as long as an equation has one open unknown
+//! that it can safely be solved for, it determines that unknown; when none has, the unknown that opens most equations
+//! is guessed. An equation whose unknowns are all known becomes a residual.
+//!
+//! Long chains are cut by further guesses: to follow a ladder from one end to the other would multiply errors at every
+//! rung.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// No unknown follows from guesses through more equations than this.
+/// The longest chain of equations through which an unknown may follow from guesses.
 const LONGEST_CHAIN: u32 = 20;
 
-/// A loop: as many rows as columns, numbered from 0.
+/// A loop: as many rows (equations) as columns (unknowns), both numbered from 0.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LoopGraph {
-    /// For each row its columns, and whether the row can safely be solved for them.
+    /// By row: its columns, each with whether the row can safely be solved for it.
     pub rows: Vec<Vec<(u32, bool)>>,
-    /// For each column how gladly it is guessed; larger is better. Only decides between equals.
+    /// By column: how suitable it is as a tearing variable; larger is better. It only decides between equals.
     pub liking: Vec<u32>,
 }
 
-/// What came out.
+/// The outcome of tearing.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct TearingResult {
-    /// Columns to guess.
+    /// Tearing variables, in the order in which they were chosen.
     pub tearing: Vec<u32>,
-    /// Rows with the columns they are solved for, in order.
+    /// Rows with the columns they are solved for, in an order in which each row reads only known columns.
     pub inner: Vec<(u32, u32)>,
-    /// Rows that remain, as many as guessed columns, ascending.
+    /// Rows that remain, as many as tearing variables, ascending.
     pub residuals: Vec<u32>,
 }
 
@@ -45,27 +49,34 @@ pub(super) fn tear(graph: &LoopGraph) -> TearingResult {
     state.torn
 }
 
+/// The state of the greedy search.
 struct TearingState<'a> {
+    /// The loop.
     graph: &'a LoopGraph,
-    /// Rows of each column.
+    /// By column: its rows.
     rows_of: Vec<Vec<u32>>,
-    /// Open columns of each row.
+    /// By row: how many of its columns are not known.
     open: Vec<u32>,
+    /// By row: whether it determines a column.
     used: Vec<bool>,
-    /// Columns that some row can safely be solved for.
+    /// By column: whether some row can safely be solved for it.
     solvable: Vec<bool>,
+    /// By column: whether it is guessed or determined.
     known: Vec<bool>,
-    /// How many equations lie between a known column and guesses.
+    /// By column: how many equations lie between it and the guesses.
     depth: Vec<u32>,
+    /// How many columns are not known.
     open_columns: usize,
-    /// Rows with one open column.
+    /// Rows with one open column. Some may have none by now.
     ready: Vec<u32>,
-    /// Columns by score, possibly outdated.
+    /// Columns by score. Entries may be outdated; `best_guess` checks them.
     heap: BinaryHeap<(u64, Reverse<u32>)>,
+    /// The result so far.
     torn: TearingResult,
 }
 
 impl<'a> TearingState<'a> {
+    /// Nothing known yet; all columns in the heap.
     fn new(graph: &'a LoopGraph) -> Self {
         let mut rows_of = vec![Vec::new(); graph.liking.len()];
         let mut solvable = vec![false; graph.liking.len()];
@@ -103,6 +114,7 @@ impl<'a> TearingState<'a> {
             let open = columns.iter().find(|(c, _)| !self.known[*c as usize]);
             let (Some(&(column, true)), false) = (open, self.used[row as usize]) else { continue };
             let depth = columns.iter().map(|e| self.depth[e.0 as usize]).max().unwrap_or(0) + 1;
+            // The column is guessed although its row determines it; the row becomes a residual.
             if depth > LONGEST_CHAIN {
                 self.torn.tearing.push(column);
             } else {
@@ -114,6 +126,7 @@ impl<'a> TearingState<'a> {
         }
     }
 
+    /// Marks a column as known and updates the rows that contain it.
     fn know(&mut self, column: u32) {
         self.known[column as usize] = true;
         self.open_columns -= 1;
@@ -126,6 +139,8 @@ impl<'a> TearingState<'a> {
             if self.open[row as usize] == 1 {
                 self.ready.push(row);
             }
+            // The score of a column depends on rows with two open columns, so the neighbours of such rows are scored
+            // anew.
             if self.open[row as usize] <= 2 {
                 touched.extend(self.graph.rows[row as usize].iter().map(|e| e.0).filter(|&c| !self.known[c as usize]));
             }
@@ -135,8 +150,9 @@ impl<'a> TearingState<'a> {
         }
     }
 
-    /// An unknown that no row can safely be solved for must be guessed. Else rows that would become solvable at once
-    /// count most, then all open rows, then what the caller likes.
+    /// The score of a column as the next guess; larger is better. From the highest bits down: no row can safely be
+    /// solved for it, so it must be guessed; rows that would become solvable at once; rows not used yet; the caller's
+    /// liking.
     fn score(&self, column: u32) -> u64 {
         let (mut opened, mut uses) = (0_u64, 0_u64);
         let must = u64::from(!self.solvable[column as usize]);
@@ -156,7 +172,7 @@ impl<'a> TearingState<'a> {
             | u64::from(self.graph.liking[column as usize].min(0xf_ffff))
     }
 
-    /// The open column with the best score.
+    /// The open column with the best score. An outdated entry is put back with its present score.
     fn best_guess(&mut self) -> u32 {
         loop {
             let (score, Reverse(column)) = self.heap.pop().expect("every open column is in the heap");

@@ -1,8 +1,10 @@
-//! Products that the value of a parameter takes out of the equations, where the structure depends on it.
+//! Products that the value 0 of a parameter removes from the equations, where the structure depends on it.
 //!
-//! `L*der(i) = v` with `L = 0` leaves no state, `R*i = v1 - v2` with `R = 0` ties two voltages together. As long as the
-//! equations can be matched without such products, the parameter may have another value in the next run; where they
+//! `L*der(i) = v` with `L = 0` leaves no state, `R*i = v1 - v2` with `R = 0` makes two voltages equal. As long as the
+//! equations can be matched without such products, the parameter may have another value in the next run. Where they
 //! cannot, it is fixed with the structure, and so is whatever it is computed from.
+//!
+//! `analysis` calls [`decisive`] at the end of a pass and [`take_out`] at the beginning of the next one.
 
 use super::draft::{DaeDraft, SystemRole};
 use super::dulmage_mendelsohn::decompose;
@@ -13,12 +15,13 @@ use super::sorting::{EquationSystem, SystemRow, UnknownColumns};
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Takes out all products whose factors are 0 by the values of these parameters.
+/// Replaces by 0 all products that a factor made 0 by these parameters removes, and fixes the parameters.
 pub(super) fn take_out(draft: &mut DaeDraft, known: &mut SignAnalysis, decisive: &[VarId]) {
     if decisive.is_empty() {
         return;
     }
     let zeros = ZeroAnalysis::find(draft, known);
+    // A factor that another parameter makes 0 as well may not be removed.
     let mut by_these = |factor: ExprId| zeros.parameters(draft, known, factor).iter().all(|v| decisive.contains(v));
     let taken: Vec<ExprId> = zeros.products.iter().filter(|(_, f)| by_these(*f)).map(|(e, _)| *e).collect();
     let map = without_products(draft, &taken);
@@ -26,7 +29,7 @@ pub(super) fn take_out(draft: &mut DaeDraft, known: &mut SignAnalysis, decisive:
     parameters::fix(draft, decisive);
 }
 
-/// The parameters with value 0 without whose products one of the systems cannot be matched.
+/// The parameters with value 0 without whose products one of the systems cannot be matched. Ascending.
 pub(super) fn decisive(draft: &mut DaeDraft, known: &mut SignAnalysis, systems: [&EquationSystem; 2]) -> Vec<VarId> {
     let zeros = ZeroAnalysis::find(draft, known);
     if zeros.products.is_empty() {
@@ -38,6 +41,7 @@ pub(super) fn decisive(draft: &mut DaeDraft, known: &mut SignAnalysis, systems: 
     for system in systems {
         let incidence = without(draft, system, &map);
         let matching = maximum(&incidence, system.columns.len());
+        // Only products in the overdetermined part matter; elsewhere a matching exists without them.
         for row in decompose(&incidence, &matching).over.rows {
             let equation = &system.rows[row as usize].equation;
             for e in draft.exprs.reachable(&[equation.lhs, equation.rhs], |_| true) {
@@ -52,23 +56,24 @@ pub(super) fn decisive(draft: &mut DaeDraft, known: &mut SignAnalysis, systems: 
     found
 }
 
-/// The image of every expression with 0 in the place of these products.
+/// By expression: its image with 0 in the place of these products.
 fn without_products(draft: &mut DaeDraft, products: &[ExprId]) -> Vec<ExprId> {
     let taken: FxHashSet<ExprNode> = products.iter().map(|e| draft.exprs.node(*e)).collect();
     draft.rewritten(|_, node| taken.contains(&node).then_some(Exprs::ZERO))
 }
 
-/// What is 0 by the values of parameters, and the products that such factors take out.
+/// What is 0 by the values of parameters, and the products that such factors remove.
 struct ZeroAnalysis {
-    /// By expression.
+    /// By expression: whether it is 0.
     zero: Vec<bool>,
-    /// By variable: the expression that it equals and that is 0.
+    /// By variable: an expression that it equals and that is 0.
     definition: Vec<Option<ExprId>>,
-    /// Products with the factor that is 0, by their place in the pool.
+    /// Products with the factor that is 0, in the order of the pool.
     products: Vec<(ExprId, ExprId)>,
 }
 
 impl ZeroAnalysis {
+    /// Evaluates all expressions of the draft.
     fn find(draft: &DaeDraft, known: &mut SignAnalysis) -> Self {
         let (count, pool) = (draft.variables.len(), &draft.exprs);
         let mut found =
@@ -82,6 +87,7 @@ impl ZeroAnalysis {
         for e in (0..draft.exprs.len() as u32).map(ExprId) {
             let ExprNode::Binary(BinaryFunction::Mul, a, b) = draft.exprs.node(e) else { continue };
             for (factor, other) in [(a, b), (b, a)] {
+                // A literal does not change with a parameter, and a product of known value contains no unknown.
                 let taken = found.zero[factor.index()] && draft.exprs.as_num(factor).is_none();
                 if taken && !found.zero[other.index()] && known.value(&draft.exprs, other).is_none() {
                     found.products.push((e, factor));
@@ -91,7 +97,7 @@ impl ZeroAnalysis {
         found
     }
 
-    /// From what is 0 to the variables that equal it, and on to what is made of them.
+    /// Carries zeros from expressions to the variables that equal them, and on to the expressions that contain these.
     fn spread(&mut self, draft: &DaeDraft, known: &mut SignAnalysis, mut open: Vec<ExprId>) {
         let mut defined: FxHashMap<ExprId, Vec<VarId>> = FxHashMap::default();
         for equation in &draft.equations {
@@ -102,6 +108,7 @@ impl ZeroAnalysis {
         if !defined.keys().any(|value| self.zero[value.index()]) {
             return;
         }
+        // Made only where some equation defines a variable to be 0.
         let users = ExpressionUsers::new(draft);
         while let Some(e) = open.pop() {
             for v in defined.remove(&e).unwrap_or_default() {
@@ -121,6 +128,7 @@ impl ZeroAnalysis {
         }
     }
 
+    /// Whether an expression is 0, from what is known about its arguments.
     fn is_zero(&self, draft: &DaeDraft, known: &mut SignAnalysis, e: ExprId) -> bool {
         if let Some(value) = known.value(&draft.exprs, e) {
             return value == 0.0;
@@ -144,7 +152,8 @@ impl ZeroAnalysis {
         }
     }
 
-    /// The parameters that make an expression 0.
+    /// The parameters that make an expression 0. Of a product only the factor that is 0 counts, of an `if` with a known
+    /// condition the condition and the chosen branch.
     fn parameters(&self, draft: &DaeDraft, known: &mut SignAnalysis, e: ExprId) -> Vec<VarId> {
         let (mut open, mut seen, mut found) = (vec![e], FxHashSet::default(), Vec::new());
         while let Some(e) = open.pop() {
@@ -167,20 +176,24 @@ impl ZeroAnalysis {
         found
     }
 
+    /// The factor that is 0 of a product in `products`; `None` for other expressions. Binary search.
     fn factor(&self, product: ExprId) -> Option<ExprId> {
         self.products.binary_search_by_key(&product, |p| p.0).ok().map(|i| self.products[i].1)
     }
 }
 
-/// The expressions that each expression stands in.
+/// The inverse of operands: the expressions that contain each expression as an operand.
 struct ExpressionUsers {
+    /// By expression: where its users begin in `users`, and one more entry for the end.
     starts: Vec<u32>,
+    /// The users of all expressions, one after the other.
     users: Vec<ExprId>,
-    /// The node of each variable, if there is one.
+    /// By variable: its node in the pool, if there is one.
     leaf: Vec<Option<ExprId>>,
 }
 
 impl ExpressionUsers {
+    /// Collects the users of all nodes of the pool, by counting sort.
     fn new(draft: &DaeDraft) -> Self {
         let pool = &draft.exprs;
         let all = || (0..pool.len() as u32).map(ExprId);
@@ -206,12 +219,13 @@ impl ExpressionUsers {
         ExpressionUsers { starts, users, leaf }
     }
 
+    /// The expressions that contain an expression as an operand.
     fn of(&self, e: ExprId) -> impl Iterator<Item = ExprId> {
         self.users[self.starts[e.index()] as usize..self.starts[e.index() + 1] as usize].iter().copied()
     }
 }
 
-/// Functions that are 0 at 0.
+/// Functions whose value at 0 is 0.
 const KEEP_ZERO: [UnaryFunction; 9] = [
     UnaryFunction::Neg,
     UnaryFunction::Abs,
@@ -224,7 +238,7 @@ const KEEP_ZERO: [UnaryFunction; 9] = [
     UnaryFunction::Tanh,
 ];
 
-/// The continuous variable that an equation with this left side defines.
+/// The continuous variable that an equation with this left side defines; `None` for other left sides.
 fn defined_by(draft: &DaeDraft, lhs: ExprId) -> Option<VarId> {
     match draft.exprs.node(lhs) {
         ExprNode::Var(v) if draft.role(v) == SystemRole::Continuous => Some(v),
@@ -232,8 +246,8 @@ fn defined_by(draft: &DaeDraft, lhs: ExprId) -> Option<VarId> {
     }
 }
 
-/// The incidence of a system after its expressions have been replaced; an equation may still be solved for what it could
-/// be solved for before, if that still occurs.
+/// The solvable incidence of a system after its expressions have been replaced. An equation may be solved for what it
+/// could be solved for before, if that still occurs.
 fn without(draft: &DaeDraft, system: &EquationSystem, map: &[ExprId]) -> IncidenceMatrix {
     let image = |e: ExprId| map.get(e.index()).copied().unwrap_or(e);
     let columns = UnknownColumns::new(&system.columns, draft.variables.len());
@@ -243,6 +257,7 @@ fn without(draft: &DaeDraft, system: &EquationSystem, map: &[ExprId]) -> Inciden
         let row = row as u32;
         let before = system.incidence.solvable(row);
         let sides = [image(equation.lhs), image(equation.rhs)];
+        // An unchanged row keeps its entries; scanning it again would be wasted work.
         if *discrete || sides == [equation.lhs, equation.rhs] {
             made.push(before, &[]);
             continue;

@@ -1,4 +1,8 @@
-//! Components: from declarations with their modifiers to nodes, on demand and then all.
+//! Builds components: from declarations with their modifiers to nodes.
+//!
+//! [`instantiate`] walks through the model in declaration order. A name in a size or condition may ask for a component
+//! earlier, so [`ComponentBuilder::component`] builds it on demand.
+//! For one component the steps are: condition, type, dimensions, then one object or variable for each array element.
 
 use crate::instance::building::given::Override;
 use crate::instance::evaluation::ranges::ArrayExtent;
@@ -20,23 +24,26 @@ use bramah_syntax::symbol::Symbol;
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
-/// The most scalar variables a model may have; beyond, a size is probably mistaken.
+/// The most scalar variables of a model. Beyond it a parameter of a size is probably wrong.
 const MOST_VARIABLES: usize = 20_000_000;
-/// The deepest nesting of components.
+/// The deepest nesting of components. Beyond it a class probably contains itself.
 const DEEPEST: usize = 60;
 
 /// What to instantiate.
 #[derive(Clone, Debug)]
 pub struct ModelRequest {
-    /// The class.
+    /// The class of the model.
     pub class: ClassId,
-    /// Values from outside.
+    /// Values of parameters and start values from outside, as from the command line.
     pub overrides: Vec<Override>,
 }
 
-/// The component tree of a class.
+/// Builds the component tree of a class.
 ///
-/// Diagnostics are collected in the returned [`Instance`]; with an error among them the tree may be incomplete.
+/// Messages are collected in the returned [`Instance`]. With an error among them the tree may be incomplete.
+///
+/// `library` must hold the class and is borrowed for as long as the instance lives.
+/// A class that cannot be simulated gives a message and an empty tree.
 pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest) -> Instance<'a, 'l> {
     let mut instance = Instance {
         library,
@@ -63,18 +70,23 @@ pub fn instantiate<'a, 'l>(library: &'l mut Library<'a>, request: &ModelRequest)
 }
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
+    /// Builds the complete tree: root scope, components, members of buses, checks, numbers of variables.
+    ///
+    /// The order matters: buses get their members after all components exist, and variables are numbered when none can
+    /// be added any more. Values from outside for elements that nobody met are reported before that.
     fn build_model(&mut self, request: &ModelRequest) {
         let class = self.instance.library.class(request.class);
         let name = self.instance.library.full_name(request.class);
         let nothing = Rc::new(Template::empty(request.class, ClassKind::Class));
         self.instance.names().new_scope(nothing.clone(), String::new(), Rc::from([]), None, class.name.span);
         let parent = self.surroundings(request.class);
-        // The model's scope is number 1, so that `Instance::root` is known before it is built.
+        // Scope 0 holds the top level. Enclosing packages get scopes before the model, so its number may be above 1.
         let root = self.instance.scopes.len();
         if root != 1 {
             self.instance.root = ScopeId(u32::try_from(root).expect("small"));
         }
         self.instance.root =
+            // The root gets an empty template first: finding its template may already look up names in it.
             self.instance.names().new_scope(nothing, String::new(), Rc::from([]), None, class.name.span);
         if !self.can_run(class, &name) {
             return;
@@ -85,6 +97,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let root = self.instance.root;
         let scope = self.instance.scope_mut(root);
         (scope.template, scope.args, scope.elements, scope.component) = (template, args, elements, true);
+        // Buses come after all components, because their members are copies of what is connected to them.
         self.build_elements(root, 0);
         self.expand_connectors();
         self.check_streams();
@@ -92,7 +105,15 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         self.number_variables();
     }
 
-    /// A stream belongs to a connector with one flow (MLS 15.1).
+    /// Checks that each stream variable belongs to a connector with a flow variable (MLS 15.1).
+    /// The search for the flow variable is that of `Instance::stream_flow`, so streams in nested records count too.
+    ///
+    /// ```text
+    /// connector Port
+    ///   stream Real h;      // needs a flow variable beside it
+    ///   flow Real m_flow;
+    /// end Port;
+    /// ```
     fn check_streams(&mut self) {
         for i in 0..u32::try_from(self.instance.variables.len()).expect("limited above") {
             if !self.instance.variables[i as usize].stream || self.instance.stream_flow(i).is_some() {
@@ -107,7 +128,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// The view from which a class given by its full name sees its surroundings.
+    /// The place from which a class given by its full name sees its surroundings: the packages that enclose it.
     fn surroundings(&mut self, class: ClassId) -> LookupContext {
         let Some(parent) = self.instance.library.parent(class) else { return ROOT };
         let around = self.surroundings(parent);
@@ -115,6 +136,10 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         LookupContext { scope: self.instance.names().package(&found), base: 0 }
     }
 
+    /// Whether a class can be simulated: a model or block that is not partial. Reports a message otherwise.
+    ///
+    /// Functions, packages, records, connectors and types have no behavior over time (MLS 4.6).
+    /// A partial class lacks equations or replaceable parts by intention.
     fn can_run(&mut self, class: &'a ast::Class, name: &str) -> bool {
         let kind = match class.kind {
             ClassKind::Model | ClassKind::Block | ClassKind::Class => None,
@@ -144,7 +169,10 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         true
     }
 
-    /// Builds all components of an instance.
+    /// Builds all components of an instance. `depth` is the number of components around it.
+    ///
+    /// Modifiers that name nothing are reported before. Classes in the instance are not touched, names ask for them.
+    /// Components nested deeper than [`DEEPEST`] are reported as endless.
     fn build_elements(&mut self, scope: ScopeId, depth: usize) {
         let template = self.instance.scope(scope).template.clone();
         self.check_targets(scope, &template);
@@ -159,6 +187,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
+    /// Reports components that contain themselves.
+    /// The message shows the component at which the limit was passed.
     fn too_deep(&mut self, scope: ScopeId) {
         let s = self.instance.scope(scope);
         let (span, class) = (s.span, s.template.class);
@@ -171,7 +201,10 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         );
     }
 
-    /// Every modifier must mean an element.
+    /// Reports modifiers that name no element of the instance, or a protected one.
+    ///
+    /// Nothing is checked if a base class is missing: the name may belong to it.
+    /// For each name only one message appears, even if many array elements have the modifier.
     fn check_targets(&mut self, scope: ScopeId, template: &Template<'a>) {
         if template.broken {
             return;
@@ -191,6 +224,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             }
             let class = self.instance.library.full_name(template.class);
             let names: Vec<Symbol> = template.elements.iter().filter(|e| !e.protected).map(|e| e.name).collect();
+            // The elements of an array have the same modifiers: one message is enough.
             let reported =
                 self.instance.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span));
             if !reported {
@@ -199,7 +233,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// A component cannot change what its class keeps to itself; a class that extends it can (MLS 4.1, 7.2).
+    /// Reports a modifier of a protected element. Only classes that extend the class may modify it (MLS 4.1, 7.2).
+    /// It is reported once for each place in the text.
     fn protected_modifier(&mut self, name: ast::Ident, template: &Template<'a>) {
         if self.instance.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == name.span)) {
             return;
@@ -213,21 +248,28 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         );
     }
 
-    /// The node of a component element; `None` if it is conditional and absent, or could not be built.
+    /// The node of a component element, built if necessary.
+    /// `None` if its condition is false, if it could not be built, or if it is just being built.
     pub fn component(&mut self, scope: ScopeId, index: u32) -> Option<NodeId> {
         self.component_at(scope, index, 0)
     }
 
+    /// Like [`Self::component`], with the number of components around it.
+    ///
+    /// The state of the element is `Busy` meanwhile. Afterwards it is the node, or `Absent`.
+    /// Messages that were reported on the way are given the component of the model to which they belong.
     fn component_at(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
         match &self.instance.scope(scope).elements[index as usize] {
             ElementState::Node(node) => return Some(*node),
             ElementState::Unknown => {}
+            // `Busy` here means that the component asks for itself. The caller reports it, if it needs the component.
             ElementState::Busy | ElementState::Absent | ElementState::Class(_) => return None,
         }
         self.instance.scope_mut(scope).elements[index as usize] = ElementState::Busy;
         let mark = self.instance.diagnostics.len();
         let node = self.build_component(scope, index, depth);
         if scope == self.instance.root && self.instance.diagnostics.len() > mark {
+            // Messages from inside a library class also name the component of the model that led there.
             let element = &self.instance.scope(scope).template.elements[index as usize];
             let (name, span) = (element.name.as_str().to_owned(), element.span);
             self.instance.point_at(mark, &name, span);
@@ -237,16 +279,27 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         node
     }
 
+    /// Builds a component that nobody has built yet. `None` if it is absent or could not be built.
+    ///
+    /// 1. An `outer` element is replaced by the `inner` component that it stands for.
+    /// 2. Modifiers are collected, and the condition is evaluated.
+    /// 3. The class is looked up, that of the outermost redeclaration if there is one, and checked.
+    /// 4. Prefixes and dimensions are determined.
+    /// 5. One node is built for each array element.
+    ///
+    /// `index` is the element in the template of `scope`. `depth` is the number of components around.
     fn build_component(&mut self, scope: ScopeId, index: u32, depth: usize) -> Option<NodeId> {
         let template = self.instance.scope(scope).template.clone();
         let element = &template.elements[index as usize];
         let TemplateElementKind::Component(declared) = element.kind else { return None };
         let own = LookupContext { scope, base: element.base };
+        // A component that is `inner` and `outer` is built as the `inner` one of what is below it.
         if declared.prefixes.outer && !declared.prefixes.inner {
             self.check_outer_unmodified(scope, declared);
             return self.outer_component(scope, declared, own);
         }
         let reached = self.instance.names().reached(scope, index);
+        // The condition comes first: an absent component may have a type or sizes that make no sense (MLS 4.4.5).
         if let Some(condition) = &declared.condition
             && !self.instance.evaluator().constant_boolean(condition, own)?
         {
@@ -270,12 +323,22 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             span: declared.name.span,
             depth,
         };
+        // A redeclaration without dimensions keeps those of the declaration.
         let subscripts = if component.subscripts.is_empty() { &declared.subscripts } else { &component.subscripts };
+        // Without a value, `:` takes its size from the start value.
         let shape = reached.binding.clone().or_else(|| start_of(&reached.args));
         let dims = self.dimensions(Some(declared.name.name), subscripts, own, shape.as_ref(), 0)?;
         self.build_shaped(&plan, &found, &dims, reached)
     }
 
+    /// The prefixes of a component: its own, those of the redeclared declaration, and those of the components around
+    /// it.
+    ///
+    /// - Variability is the strictest one of the component and what is around it.
+    /// - `input` and `output` are those of the component, or else of what is around it.
+    /// - `flow`, `stream` and mixing hold for everything inside.
+    ///
+    /// `component` is the redeclaration if there is one, `declared` the first declaration.
     fn prefixes(
         &self,
         scope: ScopeId,
@@ -285,11 +348,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     ) -> InheritedPrefixes {
         let outer = self.instance.scope(scope).prefix;
         let prefix = if component.prefix.variability.is_some() { component.prefix } else { declared.prefix };
+        // `constant` before `parameter` before `discrete`: a record of parameters has parameters as fields.
         let stricter = match (outer.variability, prefix.variability) {
             (Some(a), Some(b)) => Some(a.min(b)),
             (a, b) => a.or(b),
         };
-        // `HideResult = false` shows what is protected, too (MLS 18.3)
+        // `HideResult = false` shows protected elements as well (MLS 18.3).
         let said = annotated(declared, "HideResult");
         InheritedPrefixes {
             variability: stricter,
@@ -303,7 +367,16 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// Array dimensions of an element; `:` is taken from the value, `size(A, 1)` of `A` itself from the sizes before it.
+    /// The array dimensions of an element. `None` after a message.
+    ///
+    /// `:` takes the size from `binding`, where the first `skip` dimensions are not counted.
+    /// `own` is the name of the element: `size(A, 1)` in the dimensions of `A` itself reads the sizes before it.
+    ///
+    /// - A number or an expression of parameters is evaluated; the parameters become structural.
+    /// - `Boolean` or an enumeration gives one element for each of its values.
+    /// - `:` takes the size from the value: `Real x[:] = {1, 2}` has two elements.
+    ///
+    /// Sizes must be known when the model is built, because they determine the number of variables and equations.
     pub(in crate::instance) fn dimensions(
         &mut self,
         own: Option<Symbol>,
@@ -327,6 +400,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                         );
                         return None;
                     };
+                    // The shape alone is asked for first, because the value may read variables that are not built yet.
                     let known =
                         if b.access.is_empty() { self.instance.evaluator().shape(b.expr, b.view) } else { None };
                     let sizes = match known {
@@ -351,7 +425,13 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some(dims)
     }
 
-    /// Builds a component with the array dimensions of its declaration and of its type.
+    /// Builds a component with the dimensions `dims` of its declaration and those of its type.
+    ///
+    /// The dimensions of the type come after those of the declaration: `Triple t[2]` is a 2 by 3 array (MLS 10.1).
+    ///
+    /// `reached` are the modifiers of the component and its value, which are divided among the array elements.
+    /// Arrays with too many elements are reported. Types with an `equalityConstraint` are noted for the network.
+    /// `plan` holds what is the same for all elements: name, prefixes and place of the declaration.
     pub(in crate::instance) fn build_shaped(
         &mut self,
         plan: &ComponentPlan<'a>,
@@ -363,7 +443,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let template = match found {
             LookupResult::Class(class) => {
                 let t = self.instance.names().template(class.class, class.parent);
-                for (subscripts, base) in t.dims.iter().rev() {
+                // The type itself comes first, then what it is made of: `type B = Real[3]; type A = B[2]` is 2 by 3.
+                for (subscripts, base) in &t.dims {
                     let view = t.bases[*base as usize].parent;
                     all.extend(self.dimensions(None, subscripts, view, reached.binding.as_ref(), dims.len())?);
                 }
@@ -371,6 +452,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             }
             _ => None,
         };
+        // Checked before anything is allocated; the product itself may overflow.
         let count = all.iter().try_fold(1usize, |n, d| n.checked_mul(d.size));
         if count.is_none_or(|n| n + self.instance.variables.len() > MOST_VARIABLES) {
             self.instance.report(
@@ -396,6 +478,13 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some(node)
     }
 
+    /// Builds one node, or one for each element of an array.
+    /// `extents` are all dimensions; the first `declared` of them are those of the declaration.
+    ///
+    /// Each element gets the modifiers with its index appended, so that `A a[2](x = {1, 2})` gives `a[2].x` the value
+    /// 2.
+    /// Names are `a[1]`, `a[2,3]` and so on. A failure of one element ends the array.
+    /// The nodes are in row-major order. Without dimensions the one node is returned itself.
     fn build_array(
         &mut self,
         plan: &ComponentPlan<'a>,
@@ -421,11 +510,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             let index = unravel(flat, &dims);
             let text: Vec<String> = index.iter().map(|i| (i.place + 1).to_string()).collect();
             let name = format!("{}[{}]", plan.name, text.join(","));
-            // a type is one value inside whatever array it is used in
+            // Modifiers of the type see only the type's own dimensions: inside the type, the array around it does not
+            // exist.
             let args = all(indexed(args, &index), indexed(of_type, &index[declared..]));
             let binding = part.binding.clone().map(|b| Binding { access: extended(&b.access, &index), ..b });
             let part = ComponentValue { binding, ..part.clone() };
-            // The attributes of an array type are indexed by the type's own dimensions only.
+            // The same holds for the attributes that the chain of types gives.
             let own = &index[declared..];
             elements.push(self.build_one(plan, (&name, own), found, template, args, part)?);
         }
@@ -436,6 +526,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }))
     }
 
+    /// Builds one element: a variable of a predefined type or of a class based on one, or an object.
+    /// `index` holds the position within the dimensions of the type.
+    ///
+    /// `args` are the modifiers of this element, `part` is its value.
+    /// `None` after a message, or if `found` is neither a class nor a predefined type.
     fn build_one(
         &mut self,
         plan: &ComponentPlan<'a>,
@@ -458,7 +553,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// Attribute modifications of a type chain, each seen from around the class it stands in.
+    /// The modifiers of attributes along a chain of types, outermost first.
+    /// Each is looked up from around the class in which it stands.
     fn type_args(&self, t: &Template<'a>, index: &[ArrayPosition]) -> Vec<Modifier<'a>> {
         let none: Rc<[AccessStep]> = Rc::from([]);
         // A type is scalar inside the class that gives it its dimensions.
@@ -473,6 +569,15 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         chain
     }
 
+    /// Builds an instance of a class with components. `None` after a message, if the class cannot be a component.
+    ///
+    /// 1. Class and prefixes are checked against the rules for components.
+    /// 2. The scope is created with the modifiers and, for records, the value.
+    /// 3. A component that is no array is made visible, so that its own modifiers can ask for its sizes.
+    /// 4. Its elements are built.
+    ///
+    /// A value for a component that is no record is an error, and the component is built without it.
+    /// Connectors of blocks are checked for having a direction (MLS 4.6).
     fn build_object(
         &mut self,
         plan: &ComponentPlan<'a>,
@@ -493,6 +598,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             self.instance.names().new_scope(template.clone(), name.to_string(), args, Some(plan.scope), plan.span);
         let mut prefix = plan.prefix;
         prefix.causality = plan.prefix.causality.or(template.prefix.causality);
+        // Inputs and outputs of connectors at the top level are those of the model.
         prefix.nested = prefix.nested || !matches!(template.kind, ClassKind::Connector { .. });
         // a connector may be a record, as `connector ComplexOutput = output Complex` is
         let record = template.bases.iter().any(|b| matches!(b.ast.kind, ClassKind::Record { .. }));
@@ -511,6 +617,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             None => {}
         }
         let node = self.instance.add_node(InstanceNode::Object(scope));
+        // Elements of arrays are not entered: the array becomes visible when all of it is built.
         if let Some(index) = plan.index.filter(|_| name == plan.name) {
             // a modifier may ask for sizes of the component that it modifies: its elements are built when asked for
             self.instance.scope_mut(plan.scope).elements[index as usize] = ElementState::Node(node);
@@ -519,6 +626,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some(node)
     }
 
+    /// Whether a class can be the type of a component: not a package, function or partial class. Reports a message.
+    ///
+    /// A partial class may be complete in a redeclaration, so the help says that as well.
     fn can_be_component(&mut self, plan: &ComponentPlan<'a>, template: &Template<'a>) -> bool {
         let ast = template.bases[0].ast;
         let class = || self.instance.library.full_name(template.class);
@@ -535,6 +645,15 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         false
     }
 
+    /// Builds a scalar variable and returns its node.
+    ///
+    /// Values from outside for single array elements come before the declared value and start attribute.
+    /// Booleans, Integers and enumerations without a prefix are discrete (MLS 3.8.4).
+    /// The variable gets its number in the flat model later.
+    ///
+    /// `args` are the modifiers of the variable, `chain` those along the chain of its types, both outermost first.
+    /// Attributes that the type does not have are reported.
+    /// Strings and external objects are variables here too, although the flat model does not contain them.
     fn build_variable(
         &mut self,
         plan: &ComponentPlan<'a>,
@@ -561,6 +680,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         };
         let mut attributes = self.attributes(args.iter().chain(chain), builtin);
         let mut binding = part.binding;
+        // Values from outside for single array elements come before everything that is written in the text.
         if !self.instance.building.given_elements.is_empty() {
             if variability <= Variability::Parameter && !plan.prefix.hidden {
                 let given = self.given_element(name);
@@ -603,11 +723,17 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         };
         self.instance.variables.push(data);
         let index = u32::try_from(self.instance.variables.len() - 1).expect("limited above");
+        // Evaluated now, because it needs the variable's own place for its names.
         let state_select = self.state_select(index);
         self.instance.variables[index as usize].state_select = state_select;
         self.instance.add_node(InstanceNode::Var(index))
     }
 
+    /// The attributes that modifiers give a variable, at most one of each: the first one, which is the outermost.
+    /// Reports attributes that the type does not have.
+    ///
+    /// Modifiers come outermost first, so later ones for the same attribute are dropped (MLS 7.2.4).
+    /// A `final` one among those is reported, because something further out has changed it.
     fn attributes<'x>(
         &mut self,
         args: impl Iterator<Item = &'x Modifier<'a>>,
@@ -636,11 +762,15 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         attributes
     }
 
+    /// The attribute `stateSelect` of variable `i`. Without it, or after a message, the default.
+    /// It is needed as a number already here, since it is a property of the variable and no expression of the flat
+    /// model.
     fn state_select(&mut self, i: u32) -> StateSelect {
         let attributes = &self.instance.variables[i as usize].attributes;
         let Some((name, b)) = attributes.iter().find(|(n, _)| *n == "stateSelect").cloned() else {
             return StateSelect::Default;
         };
+        // The numbers are those of the literals in `StateSelect`; 3 is the default.
         match self.instance.parameters().known_attribute(i, name, &b, ScalarType::Enumeration(STATE_SELECT)) {
             Some(1.0) => StateSelect::Never,
             Some(2.0) => StateSelect::Avoid,
@@ -654,24 +784,33 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
 /// What is the same for all elements of a component array.
 #[derive(Clone)]
 pub(in crate::instance) struct ComponentPlan<'a> {
+    /// The full name, without array subscripts.
     pub name: String,
+    /// The scope that holds the component.
     pub scope: ScopeId,
-    /// Which element of the scope; none for what was added.
+    /// Its index in the scope's template. `None` for members that connections add to a bus.
     pub index: Option<u32>,
+    /// The first declaration, not a redeclaration.
     pub declared: &'a ast::ComponentDeclaration,
+    /// Prefixes for its elements.
     pub prefix: InheritedPrefixes,
+    /// The name in the declaration, for messages.
     pub span: Span,
+    /// The number of components around it.
     pub depth: usize,
 }
 
-/// Value of a component.
+/// The value of a component on its way to its variables.
 #[derive(Clone)]
 struct ComponentValue<'a> {
+    /// The expression, with the steps to this element.
     binding: Option<Binding<'a>>,
+    /// The component is `final`.
     final_: bool,
 }
 
-/// The attributes of a predefined type (MLS 4.9).
+/// The names of the attributes of a predefined type (MLS 4.9).
+/// Modifiers of other names are errors. External objects have no attributes.
 pub(in crate::instance) fn attributes_of(builtin: BuiltinType) -> &'static [&'static str] {
     match builtin {
         BuiltinType::Real => {
@@ -683,11 +822,13 @@ pub(in crate::instance) fn attributes_of(builtin: BuiltinType) -> &'static [&'st
     }
 }
 
+/// The full name of a component inside `owner`. The model itself has an empty name.
 fn joined(owner: &str, name: Symbol) -> String {
     if owner.is_empty() { name.as_str().to_string() } else { format!("{owner}.{name}") }
 }
 
-/// Row-major index of an element.
+/// The index of an element from its position in row-major order, with the sizes.
+/// For `dims` `[2, 3]` the position 4 is `[1, 1]`, counted from 0.
 fn unravel(mut flat: usize, dims: &[usize]) -> Vec<ArrayPosition> {
     let small = |n: usize| u32::try_from(n).expect("limited above");
     let mut index = vec![ArrayPosition { place: 0, of: 0 }; dims.len()];
@@ -698,7 +839,8 @@ fn unravel(mut flat: usize, dims: &[usize]) -> Vec<ArrayPosition> {
     index
 }
 
-/// The start value that modifiers give an array.
+/// The start value that modifiers give an array. It is used to find sizes, so `each` is left out.
+/// The array needs it only if its dimensions are `:` and it has no binding equation.
 fn start_of<'a>(args: &[Modifier<'a>]) -> Option<Binding<'a>> {
     args.iter().find_map(|arg| match arg.kind {
         ModifierKind::Modify([name], Some(m)) if name.name == "start" && !arg.each => {
@@ -709,12 +851,13 @@ fn start_of<'a>(args: &[Modifier<'a>]) -> Option<Binding<'a>> {
     })
 }
 
-/// What an annotation of a component that is true or false says (MLS 18.3).
+/// The value of a Boolean annotation of a component, as `HideResult` (MLS 18.3). `None` if it has none.
 fn annotated(c: &ast::ComponentDeclaration, name: &str) -> Option<bool> {
     says(c.annotation.as_ref()?, name)
 }
 
-/// What an annotation says of something that is true or false.
+/// The value of a Boolean annotation. `None` if it is missing or not written as `true` or `false`.
+/// An annotation is not evaluated, so an expression other than a literal is ignored.
 pub(in crate::instance) fn says(annotation: &ast::Modification, name: &str) -> Option<bool> {
     annotation.arguments.iter().find_map(|a| match &a.kind {
         ast::ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => {
@@ -727,7 +870,11 @@ pub(in crate::instance) fn says(annotation: &ast::Modification, name: &str) -> O
     })
 }
 
-/// `k` of `size(A, k)` in the dimensions of `A`.
+/// `k` if a subscript is `size(A, k)` in the dimensions of `A` itself, else `None`.
+///
+/// ```text
+/// Real A[3, size(A, 1)];   // the second size is that of the first dimension
+/// ```
 fn own_size(subscript: &Subscript, own: Symbol) -> Option<usize> {
     let Subscript::Expr(Expr { kind: ExprKind::Call { function, args, .. }, .. }) = subscript else { return None };
     let named =

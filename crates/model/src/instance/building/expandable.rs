@@ -1,5 +1,8 @@
-//! Expandable connectors (MLS 9.1.3): what is connected to a name that a bus does not have becomes a member of it, and buses
-//! that are joined have the same members.
+//! Expandable connectors (MLS 9.1.3), also called buses.
+//!
+//! `connect(sensor.y, bus.speed)` adds a member `speed` to `bus` if the bus has none.
+//! Buses that are connected get the same members. This is done on the tree, before connection sets are formed, and is
+//! repeated until no bus gets a new member.
 
 use crate::instance::components::ComponentPlan;
 use crate::instance::deduce::LoopBody;
@@ -14,22 +17,26 @@ use bramah_syntax::ast::{self, ClassBody, Equation, EquationKind, Expr, ExprKind
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
-/// Times that members travel from bus to bus; more than any chain of buses is long.
+/// The most repetitions, each of which carries members one bus further. No chain of buses is that long.
 const ROUNDS: usize = 100;
 
 /// One side of a connection.
 enum ExpandableSide {
-    /// A member that a bus lacks.
+    /// A member that the bus does not have: the scope of the bus and the name.
     Missing(ScopeId, Symbol),
-    /// A bus.
+    /// A complete bus.
     Bus(ScopeId),
-    /// Another port.
+    /// Any other port.
     Port(NodeId),
 }
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
-    /// Gives all buses the members that connections ask for.
+    /// Adds to all buses the members that connections ask for.
+    ///
+    /// Each round looks at the connections of all components and adds what is missing.
+    /// A member that was added may be missing in a bus that is connected to this one, so there are several rounds.
     pub(in crate::instance) fn expand_connectors(&mut self) {
+        // Most models have no bus, and looking at all connections takes time.
         if !self.instance.scopes.iter().any(|s| s.component && s.template.is_expandable()) {
             return;
         }
@@ -44,12 +51,18 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                     }
                 }
             }
+            // New members are new nodes: without any the work is finished.
             if self.instance.nodes.len() == before {
                 return;
             }
         }
     }
 
+    /// Looks at the connections among some equations, inside `for` and `if` as well.
+    ///
+    /// `view` is the place of the equations. `for` equations are repeated with their loop variables.
+    /// Of an `if` equation only the branch that is known to apply counts.
+    /// `when` equations contain no connections.
     fn expand_by(&mut self, equations: &'a [Equation], view: LookupContext) {
         for e in equations {
             match &e.kind {
@@ -66,7 +79,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 EquationKind::If { branches, otherwise } => {
                     let mut chosen = Some(otherwise.as_slice());
                     for (condition, body) in branches {
-                        // what cannot be known before the run has no connections, or its message comes with the network
+                        // A condition that is not known has no connections, or its message is reported with the
+                        // network.
+                        // Its messages are dropped here.
                         let (known, _) = self.instance.attempt(|i| i.evaluator().constant_boolean(condition, view));
                         match known {
                             Some(true) => chosen = Some(body),
@@ -84,7 +99,13 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// What a side of a connection names; `None` where the network has to say what is wrong, or nothing is there.
+    /// What one side of a connection names.
+    ///
+    /// `None`, without a message, if it names nothing that matters here. The network reports errors later.
+    ///
+    /// Only the last part of a reference may be missing in its bus, and it must have no subscripts.
+    /// Components on the way are built on demand.
+    /// A reference to an element of an array must select exactly one.
     fn side(&mut self, e: &'a Expr, view: LookupContext) -> Option<ExpandableSide> {
         let ExprKind::Reference(r) = &e.kind else { return None };
         let LookupResult::Component(scope, index) = self.instance.names().lookup(view, r.parts[0].name.name)? else {
@@ -119,6 +140,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
+    /// Adds the members that one connection asks for.
+    ///
+    /// - A missing member and a port: the member is added like the port.
+    /// - A missing member and a bus: the member is a bus itself, with what the other bus has.
+    /// - Two buses: each gets the members of the other one.
+    /// - Nothing is to be done for other pairs.
     fn expand_pair(&mut self, a: &ExpandableSide, b: &ExpandableSide) {
         match (a, b) {
             (ExpandableSide::Missing(bus, name), ExpandableSide::Port(port))
@@ -132,6 +159,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                     self.add_member(*bus, *name, node);
                 }
             }
+            // Both directions: each bus gets the members of the other one.
             (ExpandableSide::Bus(x), ExpandableSide::Bus(y)) => {
                 for (from, to) in [(*x, *y), (*y, *x)] {
                     let template = self.instance.scope(from).template.clone();
@@ -147,12 +175,19 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
+    /// The node of an instance. A linear search, because buses are few.
     fn node_of(&self, scope: ScopeId) -> Option<NodeId> {
         let at = self.instance.nodes.iter().position(|n| matches!(n, InstanceNode::Object(s) if *s == scope))?;
         Some(NodeId(u32::try_from(at).expect("fewer than 2^32 components")))
     }
 
-    /// A new member of a bus, like the port that is connected to it, but with no direction of its own.
+    /// Adds a member to a bus, with class, sizes and attributes of the port `like`, but without `input` or `output`.
+    ///
+    /// The direction follows from the other connections of the bus. Does nothing if the port has no declaration.
+    ///
+    /// Prefixes such as `flow` come from the class of the port, not from its declaration.
+    /// The member is hidden in the results if the bus is.
+    /// Its name in the results is that of the bus, followed by the name of the member.
     fn add_member(&mut self, bus: ScopeId, name: Symbol, like: NodeId) {
         let Some((declared, found, dims)) = self.declaration_of(like) else { return };
         let around = self.instance.scope(bus);
@@ -169,6 +204,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         };
         let Some(node) = self.build_like(&plan, &found, &dims) else { return };
         self.take_attributes(node, like);
+        // Templates are shared, so the bus gets its own copy with the additional element.
         let mut template = (*self.instance.scope(bus).template).clone();
         let index = u32::try_from(template.elements.len()).expect("fewer than 2^32 elements");
         template.by_name.insert(name, index);
@@ -186,7 +222,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         s.elements.push(ElementState::Node(node));
     }
 
-    /// The declaration, class and sizes of a port.
+    /// The declaration, class and sizes of a port. `None` for an empty array, or if no declaration is found.
+    ///
+    /// A variable gives its predefined type, so modifiers of its declared type do not get here; `take_attributes`
+    /// copies the attributes. An object gives its class with its modifiers.
+    /// For an array the declaration of its first element is used.
     fn declaration_of(
         &mut self,
         node: NodeId,
@@ -214,6 +254,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             }
             InstanceNode::Array { .. } => return None,
         };
+        // The last part of the full name, without subscripts, is the name in the declaration.
         let last = name.rsplit('.').next().unwrap_or(&name);
         let last = Symbol::new(last.split('[').next().unwrap_or(last));
         let template = &self.instance.scope(owner).template;
@@ -224,6 +265,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some((declared, found, dims))
     }
 
+    /// Builds a member with a class and sizes. `None` after a message.
     fn build_like(&mut self, plan: &ComponentPlan<'a>, found: &LookupResult<'a>, dims: &[usize]) -> Option<NodeId> {
         let extents: Vec<crate::instance::evaluation::ranges::ArrayExtent> = dims
             .iter()
@@ -232,7 +274,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         self.build_shaped(plan, found, &extents, ElementModifiers::default())
     }
 
-    /// Units and bounds of the port hold for the member, too.
+    /// Copies the attributes of a port to the new member, so that units and bounds apply to it as well.
+    /// Objects have their attributes from their class and modifiers, so nothing is copied for them.
+    /// The direction is removed, since a member of a bus has none of its own.
     fn take_attributes(&mut self, to: NodeId, from: NodeId) {
         match (self.instance.node(to).clone(), self.instance.node(from).clone()) {
             (InstanceNode::Var(a), InstanceNode::Var(b)) => {

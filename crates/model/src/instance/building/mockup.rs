@@ -1,4 +1,7 @@
-//! A component `FMU(file = "controller.fmu")`: its class is made of what the unit says of itself.
+//! FMUs as components: `FMU unit(file = "controller.fmu")`.
+//!
+//! The file is opened when the component is built. A Modelica class is generated from its description and replaces the
+//! class `FMU` of the component. During the run the equations of that class call the unit.
 
 use crate::instance::files::FileReference;
 use crate::instance::lookup::LookupResult;
@@ -12,18 +15,23 @@ use bramah_syntax::ast::Expr;
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::sync::Arc;
 
-/// The class that stands for all units, and where it ships.
+/// The class that stands for all FMUs.
 const NAME: &str = "FMU";
+/// The file in the shipped library that declares it.
 const FILE: &str = "components/FMU.mo";
 
-/// A unit that was opened, with its class.
+/// An FMU that was opened, with the class generated for it.
 pub(in crate::instance) struct FmuClass {
+    /// The opened unit.
     pub unit: Arc<ImportedFmu>,
+    /// The generated class.
     class: ClassId,
 }
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
-    /// What a component's class is: for one of `FMU` that of its unit.
+    /// The class of a component: the generated one for a component of class `FMU`, otherwise `found`.
+    ///
+    /// `args` are the modifiers of the component, from which the file is taken. `None` after a message.
     pub(in crate::instance) fn with_unit(
         &mut self,
         found: LookupResult<'a>,
@@ -38,11 +46,14 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
+    /// Whether a class is the shipped `FMU`, and not a user's class of that name.
     fn stands_for_units(&self, class: ClassId) -> bool {
         let name = self.instance.library.class(class).name;
         name.name.as_str() == NAME && self.instance.library.sources.get(name.span.file).path == FILE
     }
 
+    /// The class generated for the unit that the modifiers name. `None` after a message.
+    /// The modifier `kind` selects model exchange or co-simulation; the default is "auto".
     fn class_of_unit(&mut self, found: &ClassRef<'a>, args: &[Modifier<'a>], declared: Span) -> Option<ClassRef<'a>> {
         let Some((file, at)) = self.text_given(args, "file")? else {
             let d = Diagnostic::new(Code::NoValue, "a component of class `FMU` needs the file of its unit");
@@ -55,7 +66,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some(ClassRef { class, ..found.clone() })
     }
 
-    /// The value that modifications give to a text; inner `None` where they give none.
+    /// The String that the modifiers give to a parameter, with its place.
+    ///
+    /// `Some(None)` if no modifier gives it. `None` after a message, if it is not known or no String.
     fn text_given(&mut self, args: &[Modifier<'a>], name: &str) -> Option<Option<(String, Span)>> {
         let value = |arg: &Modifier<'a>| match arg.kind {
             ModifierKind::Modify([target], Some(m)) if target.name.as_str() == name => {
@@ -71,9 +84,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// A unit by the name of its file and its kind, read and loaded at its first use.
+    /// The unit in a file, opened at its first use. `None` after a message.
+    /// Two components with the same file and kind share the unit and its class.
+    /// `kind` is "cs", "me" or "auto"; `at` is where the file is named.
     pub(in crate::instance) fn opened(&mut self, file: &str, kind: &str, at: Span) -> Option<&FmuClass> {
         let key = (file.to_owned(), kind.to_owned());
+        // Opening loads the code of the unit, so it is done once.
         if !self.instance.functions.units.contains_key(&key) {
             let bytes = match self.instance.library.bytes(file) {
                 Ok(bytes) => bytes,
@@ -99,12 +115,14 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         self.instance.functions.units.get(&key)
     }
 
-    /// The object behind the equations of a component: its unit with the values of its texts.
+    /// The external object behind the equations of a component. `None` after a message.
+    /// `given` are the file, the kind, and the values of the unit's String parameters, all of which must be known.
     pub(in crate::instance) fn mock_up(
         &mut self,
         given: &[ExternalValue],
         place: FileReference,
     ) -> Option<ModelicaValue> {
+        // All three must be known here, because Strings are not part of the run.
         let [ExternalValue::Text(file), ExternalValue::Text(kind), ExternalValue::Text(texts)] = given else {
             return self.instance.fail(Code::NotConstant, "texts of a unit must be known before the run", place.call);
         };

@@ -1,4 +1,9 @@
-//! Components: from declarations with their modifiers to nodes, and what is refused on the way.
+//! Components: from declarations with their modifiers to nodes, and the checks on the way.
+//!
+//! - [`components`] builds nodes and scalar variables; the other files help it.
+//! - `given` takes values from outside, `outer` finds `inner` components, `redeclared` checks replacements.
+//! - `expandable` adds members to buses, [`overconstrained`] notes types whose values depend on each other.
+//! - `restrictions` checks what a class of a kind may hold, `mockup` puts FMUs in the place of components.
 
 pub mod components;
 pub(in crate::instance) mod expandable;

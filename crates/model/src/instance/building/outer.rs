@@ -1,4 +1,7 @@
-//! `outer` components: the `inner` ones that they mean, made where there is none.
+//! `outer` components: they stand for the `inner` component of the same name further out (MLS 5.4).
+//!
+//! The component builder asks here for each `outer` declaration and gets the node of the `inner` component.
+//! If there is none, an `inner` component with default values is added to the model, with a message.
 
 use crate::instance::building::components::ComponentPlan;
 use crate::instance::lookup::{BuiltinType, LookupResult};
@@ -12,6 +15,16 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
+    /// The node for an `outer` declaration. `None` after a message.
+    ///
+    /// `view` is the place of the declaration. If no `inner` component is found, one is added at the top level, unless
+    /// the class is partial or the model has a component that was probably meant.
+    ///
+    /// 1. The nearest `inner` component of this name further out, if it fits.
+    /// 2. Otherwise an error, if the class has no default or a component was probably meant.
+    /// 3. Otherwise a new component at the top level, with a message that shows the declaration to write.
+    ///
+    /// The added component has the name of the `outer` declaration and default values.
     pub(in crate::instance) fn outer_component(
         &mut self,
         scope: ScopeId,
@@ -30,6 +43,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 .help(help)
         };
         let instance = self.instance.scope(scope).name.clone();
+        // A variable such as `outer Real g` has no default that could be added.
         let LookupResult::Class(class) = &found else {
             let ty = declared.class.dotted();
             self.instance.report(no_inner(instance, format!("add `inner {ty} {name} = ...;` to the model")));
@@ -41,6 +55,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             self.instance.report(no_inner(instance, help));
             return None;
         }
+        // Before a component is added: with a default in the place of the one meant, results would be wrong silently.
         if let Some(meant) = self.meant_as_inner(scope, name, class.class) {
             if self.instance.diagnostics.iter().all(|d| d.message != meant.message) {
                 self.instance.report(meant);
@@ -66,12 +81,18 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             depth: 0,
         };
         let node = self.build_shaped(&plan, &found, &[], ElementModifiers::default())?;
+        // Entered, so that the other `outer` declarations of this name find it.
         self.instance.building.inner.insert((root, name), node);
         Some(node)
     }
 
-    /// A component further up that was meant for an `outer` one and is not found by it, because it is not `inner` or has
-    /// another name: all would go on with a default that was added instead.
+    /// A message if a component further out was probably meant as the `inner` one. `None` if there is no such
+    /// component.
+    ///
+    /// It has the class `wanted`, but it lacks the prefix `inner` or has another name.
+    ///
+    /// The search goes outwards from the instance that holds the `outer` declaration.
+    /// Classes that extend the wanted class count as well.
     fn meant_as_inner(&mut self, scope: ScopeId, name: Symbol, wanted: ClassId) -> Option<Diagnostic> {
         let mut at = self.instance.scope(scope).owner;
         while let Some(owner) = at {
@@ -102,14 +123,17 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         None
     }
 
-    /// An empty place before the first element of the model.
+    /// The position before the first element of the model, for a suggestion to insert a declaration there.
+    /// `None` if the model has no elements.
     fn first_element_of_model(&self) -> Option<Span> {
         let class = self.instance.library.class(self.instance.scope(self.instance.root).template.class);
         let first = crate::resolve::names::body(class)?.elements.first()?.span;
         Some(Span { end: first.start, ..first })
     }
 
-    /// An `outer` element is somebody else's and cannot be modified (MLS 5.4).
+    /// Reports a modifier or value of an `outer` element (MLS 5.4).
+    /// Its values come from the `inner` component, so they can only be changed there.
+    /// Only the first modifier is shown.
     pub(in crate::instance) fn check_outer_unmodified(
         &mut self,
         scope: ScopeId,
@@ -128,7 +152,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         );
     }
 
-    /// Whether a single `inner` variable, or an array, is of the type and size of the `outer` one.
+    /// Whether an `inner` variable, or array, has the type and size of the `outer` declaration.
+    ///
+    /// Reports a message if not. It is the part of [`Self::fits_outer`] for variables.
+    /// Components that are no variables pass, and so do types that are not found.
+    /// Both places are shown in the message: where the `outer` and where the `inner` one is declared.
     pub(in crate::instance) fn fits_outer_shape(
         &mut self,
         node: NodeId,
@@ -141,6 +169,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             InstanceNode::Array { dims, elements, .. } => (dims.clone(), elements.first().copied()),
             _ => (Vec::new(), Some(node)),
         };
+        // An empty array has no element to compare, and arrays of components are not compared here.
         let Some(InstanceNode::Var(i)) = first.map(|n| self.instance.node(n).clone()) else { return true };
         let found = self.instance.names().lookup_path(view, &declared.class).ok();
         let builtin = match &found {
@@ -156,6 +185,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             Some(BuiltinType::Enumeration(e)) => data.ty == ScalarType::Enumeration(e),
             _ => true,
         };
+        // A type with dimensions of its own adds these to the declared ones, so the sizes are not compared then.
         let shaped = matches!(&found, Some(LookupResult::Class(c)) if !self.instance.names().template(c.class, c.parent).dims.is_empty());
         if same_type && (shaped || have == dims) {
             return true;
@@ -176,7 +206,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         false
     }
 
-    /// Whether an `inner` component has what the class of the `outer` one promises (MLS 5.4).
+    /// Whether an `inner` component has all public elements of the class of the `outer` declaration (MLS 5.4).
+    ///
+    /// Reports a message if not. The result is kept for each pair of component and declaration.
+    /// Elements are compared by name only. Classes with missing bases pass.
+    /// Protected elements do not count.
     pub(in crate::instance) fn fits_outer(
         &mut self,
         node: NodeId,

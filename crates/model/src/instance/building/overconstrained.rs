@@ -1,5 +1,8 @@
-//! Overconstrained connectors (MLS 9.4): types whose values depend on each other, such as an orientation, and that say by a
-//! function `equalityConstraint` when two of them are equal. `network` finds out which connections need it.
+//! Overconstrained connectors (MLS 9.4), such as those with orientations.
+//!
+//! Their types have more variables than degrees of freedom, and a function `equalityConstraint` that tells when two
+//! values are equal. Components of such types are noted here while the tree is built. The network finds which
+//! connections need the constraint, and `flat` asks here for its equations.
 
 use crate::instance::algorithm::AlgorithmCall;
 use crate::instance::call::Callee;
@@ -15,26 +18,27 @@ use bramah_syntax::symbol::Symbol;
 use indexmap::IndexMap;
 use rustc_hash::{FxBuildHasher, FxHashSet};
 
-/// The function by which a type says when two of its values are equal.
+/// The function that tells when two values of the type are equal.
 const CONSTRAINT: &str = "equalityConstraint";
 
-/// The overconstrained components of a model, and what the network says of them.
+/// The overconstrained components of a model, and what the network has found about them.
 pub struct OverconstrainedComponents<'a> {
-    /// `equalityConstraint`
+    /// The symbol of `equalityConstraint`, made once.
     name: Symbol,
-    /// All of them, with the classes of those that are variables and arrays; records know theirs themselves.
+    /// All these components in the order in which they were built.
+    /// Variables and arrays come with their class; records know it from their scope.
     nodes: IndexMap<NodeId, Option<ClassRef<'a>>, FxBuildHasher>,
-    /// Roots of the connection graph, once the network is known.
+    /// The roots of the connection graphs, for `Connections.isRoot`. Empty until the network is known.
     pub roots: FxHashSet<NodeId>,
-    /// First sides of branches that are nearer to the root than their second sides.
+    /// First sides of branches that are nearer to the root than the second sides, for `Connections.rooted`.
     pub rooted: FxHashSet<NodeId>,
 }
 
-/// When two overconstrained components are equal.
+/// The equations that make two overconstrained components equal.
 pub struct EqualityResidue {
-    /// All are zero.
+    /// Expressions that must be 0: the outputs of `equalityConstraint`.
     pub values: Vec<ExprId>,
-    /// What must hold besides.
+    /// Assertions in that function, to be checked during the run.
     pub asserts: Vec<AlgorithmCall>,
 }
 
@@ -50,7 +54,11 @@ impl Default for OverconstrainedComponents<'_> {
 }
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
-    /// Remembers a component of a type with a constraint, or all of an array of such records.
+    /// Notes a component whose type has an `equalityConstraint`. For an array of records each element is noted.
+    ///
+    /// `one` is true if the declaration has no dimensions: an array then comes from the type and is one value.
+    /// `found` is the class of the component, `template` its elements.
+    /// A type without the function is left out at once.
     pub(in crate::instance) fn note_constraints(
         &mut self,
         node: NodeId,
@@ -59,9 +67,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         template: &Template<'a>,
     ) {
         let at = template.by_name.get(&self.instance.overconstrained.name);
+        // The name of the function is compared as a symbol, because this runs for every component.
         if !at.is_some_and(|&i| matches!(template.elements[i as usize].kind, TemplateElementKind::Class(_))) {
             return;
         }
+        // Objects know their class from their scope; for the others it is stored.
         let class = match found {
             LookupResult::Class(class) => template.builtin.map(|_| class.clone()),
             _ => None,
@@ -80,7 +90,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         self.instance.overconstrained.nodes.contains_key(&node)
     }
 
-    /// The constraint function of a component.
+    /// The function `equalityConstraint` of a component. `None` if it has none.
+    /// An array or variable gets it from the class that was noted with it.
     fn constraint_of(&mut self, node: NodeId) -> Option<ClassRef<'a>> {
         let name = self.instance.overconstrained.name;
         let found = match *self.instance.node(node) {
@@ -96,7 +107,13 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// What holds where two overconstrained components are equal; `None` after a message.
+    /// The equations for equality of two overconstrained components. `None` after a message.
+    /// `span` is the connection.
+    ///
+    /// ```text
+    /// connect(a.frame, b.frame);   // equalityConstraint(a.frame.R, b.frame.R) = zeros(3)
+    /// ```
+    /// Assertions in the function are not evaluated now: they are checked during the run.
     pub fn constraint_residue(&mut self, a: NodeId, b: NodeId, span: Span) -> Option<EqualityResidue> {
         let function = self.constraint_of(a)?;
         let values =
@@ -104,6 +121,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         let template = self.instance.names().template(function.class, function.parent);
         let name = self.instance.library.full_name(function.class);
         let callee = Callee { scope: self.instance.names().package(&function), template, name };
+        // Assertions of the function are collected behind what others have collected.
         let mark = self.instance.eval.calls.len();
         let value = self
             .instance
@@ -114,7 +132,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some(EqualityResidue { values, asserts })
     }
 
-    /// The number of equations that equality of two such components means: the size of the function's output.
+    /// The number of equations for equality of two such components: the size of the function's output.
+    /// `None` if it is not known, as with an output declared with `:`.
+    /// Its dimensions are evaluated at the place of the function.
     fn constraint_size(&mut self, node: NodeId) -> Option<usize> {
         let function = self.constraint_of(node)?;
         let template = self.instance.names().template(function.class, function.parent);
@@ -134,19 +154,23 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some(size)
     }
 
-    /// The variables of all overconstrained components, each with the size of their constraint.
+    /// The variables of each overconstrained component, with the number of its equality equations.
+    /// The number of variables is used if the output of the function has no known size.
     pub fn constraint_sizes(&mut self) -> Vec<(Vec<u32>, usize)> {
         let mut found = Vec::new();
         for k in 0..self.instance.overconstrained.nodes.len() {
             let (&node, _) = self.instance.overconstrained.nodes.get_index(k).expect("counted");
             let mut variables = Vec::new();
             self.variables_of(node, &mut variables);
+            // Without a known size each variable counts as one equation.
             let size = self.constraint_size(node).unwrap_or(variables.len());
             found.push((variables, size));
         }
         found
     }
 
+    /// Collects the variables of a component in the order of its elements.
+    /// Elements that are absent or are classes have no variables.
     fn variables_of(&self, node: NodeId, found: &mut Vec<u32>) {
         match self.instance.node(node) {
             InstanceNode::Var(i) => found.push(*i),
@@ -161,7 +185,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// `Connections.isRoot(R)` and `Connections.rooted(R)`.
+    /// `Connections.isRoot(R)` or `Connections.rooted(R)` (MLS 9.4.1). `None` after a message.
+    /// The answer is a constant, which is false until the network is known.
+    ///
+    /// ```text
+    /// if Connections.isRoot(frame.R) then ... end if;
+    /// ```
     pub(in crate::instance) fn connection_query(
         &mut self,
         name: &str,
@@ -178,7 +207,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         Some(ModelicaValue::Scalar(if holds { Exprs::ONE } else { Exprs::ZERO }, ScalarType::Boolean))
     }
 
-    /// The overconstrained component that an argument names, or a message.
+    /// The overconstrained component that an argument names. `None` after a message.
+    /// Any other expression than a reference to one such component is an error.
     pub fn overconstrained_node(&mut self, e: &'a Expr, view: LookupContext) -> Option<NodeId> {
         let node = match &e.kind {
             ExprKind::Reference(r) => {

@@ -1,4 +1,7 @@
-//! Redeclared components: what takes their place must be a subtype of what was declared.
+//! Checks of redeclared components: the replacement must be a subtype of the constraining class (MLS 6.4, 7.3).
+//!
+//! Only the existence of public elements is compared, not their types. Redeclared classes are checked in `lookup`, with
+//! the same [`ComponentBuilder::check_subtype`].
 
 use crate::instance::lookup::LookupResult;
 use crate::instance::modifiers::ModifierKind;
@@ -7,7 +10,12 @@ use bramah_syntax::ast::{self};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
-    /// A redeclared component must be of a class that fits the constraining one: here, it must offer its elements.
+    /// Checks a redeclaration of a component against the declaration.
+    ///
+    /// The declaration must be `replaceable` and not constant, and the class must fit its constraining class (MLS 7.3).
+    /// `component` is the outermost redeclaration, `found` its class.
+    /// A redeclaration that is an element of a class is checked where its elements are gathered.
+    /// The messages show both declarations.
     pub(in crate::instance) fn check_redeclaration(
         &mut self,
         declared: &'a ast::ComponentDeclaration,
@@ -15,6 +23,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         component: &'a ast::ComponentDeclaration,
         found: &LookupResult<'a>,
     ) {
+        // Without a redeclaration the builder passes the declaration itself.
         if std::ptr::eq(declared, component) {
             return;
         }
@@ -43,13 +52,18 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             );
             return;
         }
+        // Without `constrainedby`, the declared class is the constraint (MLS 7.3.2).
         let path = declared.constraint.as_ref().map_or(&declared.class, |c| &c.path);
         let Ok(constraint) = self.instance.names().lookup_path(own, path) else { return };
         self.check_subtype(&constraint, found, component.name.span, path.span);
     }
 
-    /// A redeclaration of a redeclaration needs the inner one to be replaceable, and keeps to its constraint, which keeps
-    /// to the one before (MLS 7.3).
+    /// Checks redeclarations of redeclarations (MLS 7.3).
+    ///
+    /// Each inner one must be `replaceable`. Each with a `constrainedby` must fit it, as must the final class, and the
+    /// constraint must fit that of the declaration before it. `all` lists the redeclarations, outermost first.
+    /// `declared` is the innermost step. The check ends with the first violation.
+    /// `own` is the place of the declaration, `found` the class of the outermost redeclaration.
     pub(in crate::instance) fn check_chain(
         &mut self,
         declared: &'a ast::ComponentDeclaration,
@@ -80,10 +94,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
             let Some(constraint) = &step.constraint else { continue };
             let Ok(promised) = self.instance.names().lookup_path(view, &constraint.path) else { continue };
             let at = step.name.span;
-            // what stands here itself, and what takes its place in the end
+            // Both must fit the constraint of this step: the class written here, and the one that is used in the end.
             let own_class = self.instance.names().lookup_path(view, &step.class).ok();
             let fits = own_class.is_none_or(|c| self.check_subtype(&promised, &c, at, constraint.path.span))
                 && self.check_subtype(&promised, found, steps[0].0.name.span, constraint.path.span);
+            // The next entry is further in: its constraint is wider or equal.
             let before = steps.get(k + 1).and_then(|(s, v)| {
                 let path = s.constraint.as_ref().map_or(&s.class, |c| &c.path);
                 Some((self.instance.names().lookup_path(*v, path).ok()?, path.span))
@@ -95,7 +110,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// Every public component of the constraining class must exist in the class that takes its place (MLS 6.4).
+    /// Whether a class has every public element of another one (MLS 6.4). Reports a message if not.
+    ///
+    /// `at` is the replacement and `constrained` the constraint. Predefined types, and classes with missing bases,
+    /// pass.
+    /// Elements beyond those of the constraint are allowed: the replacement may have more.
     pub(in crate::instance) fn check_subtype(
         &mut self,
         constraint: &LookupResult<'a>,

@@ -1,5 +1,7 @@
-//! What a class may hold and extend by its kind, and what may stand where in it (MLS 4.6, 7.1.3, 11): read off the text of
-//! each class once, when it is first used.
+//! Restrictions on what a class may contain and extend, by its kind (MLS 4.6, 7.1.3, 11).
+//!
+//! Each class is checked once, when its template is made. The checks read the syntax tree only.
+//! Violations are collected first and then reported, so that each check stays a plain function.
 
 use crate::instance::ComponentBuilder;
 use crate::instance::lookup::BuiltinType;
@@ -11,21 +13,31 @@ use bramah_syntax::ast::{
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
-/// A rule that does not hold: what, where, why, and its place in the language specification.
+/// A rule that is violated.
 struct RestrictionViolation {
+    /// The message.
     what: String,
+    /// The place in the text.
     at: Span,
+    /// What the message says at that place.
     label: String,
+    /// The section of the language specification.
     rule: &'static str,
 }
 
+/// A violation from its parts.
 fn breach(what: impl Into<String>, at: Span, label: impl Into<String>, rule: &'static str) -> RestrictionViolation {
     RestrictionViolation { what: what.into(), at, label: label.into(), rule }
 }
 
 impl<'a> ComponentBuilder<'_, 'a, '_> {
-    /// Refuses what the kind of a class does not allow in it.
+    /// Checks a class for what its kind does not allow. Each class is checked only once.
+    ///
+    /// Names, sections, elements, statements, imports and duplicate modifiers are checked, in this order.
+    /// For a short class only its modifiers are.
+    /// What modifiers and redeclarations add is checked elsewhere.
     pub(in crate::instance) fn check_class(&mut self, class: ClassId) {
+        // Templates at several places belong to one class: its text is checked once.
         if !self.instance.classes.checked_classes.insert(class) {
             return;
         }
@@ -50,6 +62,8 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
+    /// Reports a violation, unless one was reported at the same place. `class` is named in the message.
+    /// The note of the message names the section of the language specification.
     fn refuse(&mut self, b: RestrictionViolation, class: Option<ClassId>) {
         if self
             .instance
@@ -67,9 +81,12 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         self.instance.report(d);
     }
 
-    /// A class of one kind may extend only some others (MLS 7.1.3).
+    /// Checks that a class may extend a base class of another kind (MLS 7.1.3).
+    /// The base must not be replaceable (MLS 7.1.4).
+    /// `at` is the name in the `extends` clause.
     pub(in crate::instance) fn check_base(&mut self, class: ClassId, base: ClassId, at: Span) {
         let (derived, base_class) = (self.instance.library.class(class), self.instance.library.class(base));
+        // A short class or a redeclaration may have a replaceable base: `redeclare model M = N`.
         if base_class.prefixes.replaceable
             && !base_class.prefixes.redeclare
             && !matches!(derived.body, ClassBody::Short { .. })
@@ -85,9 +102,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// Only types and connectors extend a predefined type.
+    /// Checks that only types and connectors extend a predefined type (MLS 7.1.3).
+    /// Every class may extend `ExternalObject`.
     pub(in crate::instance) fn check_builtin_base(&mut self, class: ClassId, base: BuiltinType, at: Span) {
         let kind = self.instance.library.class(class).kind;
+        // `class` is the general kind and may be based on anything.
         let fine = matches!(kind, ClassKind::Type | ClassKind::Connector { .. } | ClassKind::Class)
             || base == BuiltinType::Object;
         if !fine {
@@ -97,13 +116,17 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// A class with more than the base of an array of components in it.
+    /// Reports a class with a body that extends an array type (MLS 4.5.2).
     pub(in crate::instance) fn check_array_base(&mut self, class: ClassId, at: Span) {
         let what = "a class of arrays cannot be extended by one with elements";
         self.refuse(breach(what, at, "this class is an array", "4.5.2"), Some(class));
     }
 
-    /// Prefixes of a component whose class is a model or block, or of a connector (MLS 4.4.2, 4.4.4).
+    /// Checks the prefixes of a component against the kind of its class (MLS 4.4.2, 9.1).
+    ///
+    /// A model or block takes no prefixes such as `flow` or `parameter`. A connector is no parameter or constant.
+    /// An operator record with `flow` needs the operators `'+'` and `'0'`, because flows are added (MLS 9.3).
+    /// Prefixes of predefined types are not restricted here.
     pub(in crate::instance) fn check_prefixes(
         &mut self,
         declared: &ast::ComponentDeclaration,
@@ -127,7 +150,7 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 self.check_nested_prefixes(declared, template);
             }
             ClassKind::Record { operator: true } if p.flow => {
-                // flows of a node are summed up, and an open one is zero
+                // The flows at a node are added, and the flow of an unconnected port is zero.
                 let lacks = |o: &&&str| !template.by_name.contains_key(&Symbol::new(o));
                 if let Some(operator) = ["'+'", "'0'"].iter().find(lacks) {
                     let what = format!("`{name}` is `flow`, and its class has no operator {operator}");
@@ -138,7 +161,9 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// `flow`, `input` and `output` of a structure may not meet the same inside it (MLS 4.4.2.2).
+    /// Reports `flow`, or `input` and `output`, both at a connector and at one of its elements (MLS 4.4.2.2).
+    /// Only the first such element is reported.
+    /// `declared` is the component, `template` its class.
     fn check_nested_prefixes(
         &mut self,
         declared: &ast::ComponentDeclaration,
@@ -159,7 +184,11 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
         }
     }
 
-    /// A block has inputs and outputs only (MLS 4.6).
+    /// Checks that a public connector of a block is an input or output, or consists of these (MLS 4.6).
+    ///
+    /// Parameters and constants in the connector do not count.
+    /// Connectors with a prefix of their own, and predefined types, are fine.
+    /// A connector that is itself declared with a direction is fine.
     pub(in crate::instance) fn check_block_port(
         &mut self,
         declared: &ast::ComponentDeclaration,
@@ -170,8 +199,10 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
                 || matches!(c.prefix.variability, Some(VariabilityPrefix::Parameter | VariabilityPrefix::Constant))
         };
         let directed_itself = declared.prefix.causality.is_some() || template.prefix.causality.is_some();
-        // what joins a bus gives its members their directions (MLS 9.1.3)
+        // The members of a bus get their directions from what is connected (MLS 9.1.3).
         if directed_itself || template.builtin.is_some() || template.is_expandable() {
+            // Elements with a direction, parameters and constants are fine; the first other one makes the port an
+            // error.
             return;
         }
         let open = template.elements.iter().find_map(|e| match e.kind {
@@ -188,12 +219,15 @@ impl<'a> ComponentBuilder<'_, 'a, '_> {
     }
 }
 
-/// Whether a member of a connector is a plain variable.
+/// Whether an element of a connector is a variable of a predefined type, written by its name.
+/// Elements of other types are not checked.
 fn is_open(c: &ast::ComponentDeclaration) -> bool {
     c.class.parts.len() == 1 && matches!(c.class.parts[0].name.as_str(), "Real" | "Integer" | "Boolean" | "String")
 }
 
-/// The table of MLS 7.1.3, in which a `class` is free to be anything.
+/// Whether a class of one kind may extend one of another kind: the table of MLS 7.1.3.
+/// `class` may extend anything and be extended by anything.
+/// A model may extend a block or record, a connector a record or type.
 fn may_extend(derived: ClassKind, base: ClassKind) -> bool {
     use ClassKind::{Block, Class, Connector, Function, Model, Operator, Package, Record, Type};
     matches!(
@@ -211,6 +245,8 @@ fn may_extend(derived: ClassKind, base: ClassKind) -> bool {
     )
 }
 
+/// The prefix of a component, for messages. The first of several, in the order of this list.
+/// `None` if it has none of these prefixes.
 fn prefix_word(p: ast::TypePrefix) -> Option<&'static str> {
     match (p.flow, p.stream, p.variability, p.causality) {
         (true, ..) => Some("flow"),
@@ -224,7 +260,10 @@ fn prefix_word(p: ast::TypePrefix) -> Option<&'static str> {
     }
 }
 
-/// Names of predefined types are taken (MLS 4.9), those of attributes are no literals (MLS 4.9.5).
+/// Names that are not free: predefined types cannot name classes or components (MLS 4.9), and attributes cannot be
+/// literals of enumerations (MLS 4.9.5).
+/// Components are checked only in classes with a body.
+/// All violations are collected, not only the first one.
 fn names(class: &ast::Class, found: &mut Vec<RestrictionViolation>) {
     let taken = |name: Symbol| matches!(name.as_str(), "Real" | "Integer" | "Boolean" | "String");
     if taken(class.name.name) {
@@ -250,7 +289,8 @@ fn names(class: &ast::Class, found: &mut Vec<RestrictionViolation>) {
     }
 }
 
-/// Sections that a kind of class does not have (MLS 4.6).
+/// Sections that a kind of class does not have (MLS 4.6), and a second algorithm section of a function (MLS 12.2).
+/// Records, connectors and packages have neither equations nor algorithms.
 fn sections(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<RestrictionViolation>) {
     let first_equation = body.equations.first().or(body.initial_equations.first()).map(|e| e.span);
     let algorithm = |sections: &[Vec<Statement>]| sections.first().and_then(|s| s.first()).map(|s| s.span);
@@ -270,7 +310,14 @@ fn sections(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Restrictio
     }
 }
 
-/// Elements that a kind of class does not have (MLS 4.6), and `time` where nothing runs.
+/// Elements that a kind of class does not have (MLS 4.6), and uses of `time` where it is not known (MLS 3.6.7).
+/// Modifiers of the elements are checked for duplicates as well.
+///
+/// - An `operator` contains functions only (MLS 14).
+/// - Records and connectors have no protected, `inner` or `outer` elements.
+/// - `time` may not be used in functions, records, connectors and packages.
+///
+/// Only the first use of `time` in a function is reported.
 fn elements(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<RestrictionViolation>) {
     let kind = class.kind.word();
     let structure = matches!(class.kind, ClassKind::Record { .. } | ClassKind::Connector { .. });
@@ -294,6 +341,7 @@ fn elements(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Restrictio
             ElementKind::Extends(e) => e.modification.as_ref(),
             _ => None,
         };
+        // Only values of declarations are searched for `time` here, not those of nested modifiers.
         let Some(m) = modification else { continue };
         duplicates(&m.arguments, found);
         if timeless && let Some(at) = m.value.as_ref().and_then(time_in) {
@@ -307,7 +355,9 @@ fn elements(class: &ast::Class, body: &ast::LongBody, found: &mut Vec<Restrictio
     }
 }
 
-/// Where an expression reads `time`.
+/// The place where an expression reads `time`. `None` if it does not, or only in a form that is not searched.
+/// Subscripts, ranges and comprehensions are not searched.
+/// It stops at the first use.
 fn time_in(e: &Expr) -> Option<Span> {
     let any = |all: &[&Expr]| all.iter().find_map(|e| time_in(e));
     match &e.kind {
@@ -325,6 +375,8 @@ fn time_in(e: &Expr) -> Option<Span> {
     }
 }
 
+/// The place where a statement reads `time`, in values, conditions or nested statements.
+/// Targets of assignments and ranges of loops are not searched.
 fn time_in_statement(s: &Statement) -> Option<Span> {
     let body = |list: &[Statement]| list.iter().find_map(time_in_statement);
     match &s.kind {
@@ -339,7 +391,10 @@ fn time_in_statement(s: &Statement) -> Option<Span> {
     }
 }
 
-/// `break` leaves a loop (MLS 11.2.6), and a `when` stands in no other (MLS 11.2.7).
+/// Checks that `break` is inside a loop (MLS 11.2.6), and that no `when` is inside another one (MLS 11.2.7).
+/// `in_loop` and `in_when` tell what is around the statements.
+/// Nested statements are checked with the surroundings that they have there.
+/// Each violation is reported at its own statement.
 fn statements(list: &[Statement], in_loop: bool, in_when: bool, found: &mut Vec<RestrictionViolation>) {
     for s in list {
         match &s.kind {
@@ -362,7 +417,8 @@ fn statements(list: &[Statement], in_loop: bool, in_when: bool, found: &mut Vec<
     }
 }
 
-/// One name is imported once (MLS 13.2.1).
+/// Checks that no name is imported twice (MLS 13.2.1). Imports of lists and of complete packages are left out.
+/// `import A = B.C;` has the name `A`, `import B.C;` the name `C`.
 fn imports(body: &ast::LongBody, found: &mut Vec<RestrictionViolation>) {
     let mut known: Vec<Symbol> = Vec::new();
     for e in &body.elements {
@@ -376,7 +432,8 @@ fn imports(body: &ast::LongBody, found: &mut Vec<RestrictionViolation>) {
     }
 }
 
-/// No two arguments of a modification give the same thing a value (MLS 7.2).
+/// Checks that a modification gives nothing two values (MLS 7.2): `a.b = 1` and `a(b = 2)` name the same.
+/// Redeclarations and modifiers without a value do not count.
 fn duplicates(arguments: &[ModificationArgument], found: &mut Vec<RestrictionViolation>) {
     let mut given: Vec<(String, Span)> = Vec::new();
     leaves(arguments, "", &mut given);
@@ -387,7 +444,8 @@ fn duplicates(arguments: &[ModificationArgument], found: &mut Vec<RestrictionVio
     }
 }
 
-/// The full names of all that an argument list gives values.
+/// The full names of everything to which a list of arguments gives a value, with their places.
+/// `around` is the name before them, with a dot at its end.
 fn leaves(arguments: &[ModificationArgument], around: &str, given: &mut Vec<(String, Span)>) {
     for a in arguments {
         let ModificationArgumentKind::Modify { path, modification: Some(m), .. } = &a.kind else { continue };

@@ -1,4 +1,7 @@
-//! Arguments bound to the inputs of a function or the fields of a record, with defaults and checks.
+//! Binds the arguments of a call to the inputs of a function, or to the fields of a record constructor.
+//!
+//! Positional arguments come first, then named ones, then defaults (MLS 12.4.1).
+//! Each bound value is pushed as a local, so that later defaults and the body can read it.
 
 use crate::instance::call::{Callee, FormalParameter};
 use crate::instance::lookup::{BuiltinType, LookupResult};
@@ -11,7 +14,11 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
 impl<'a> FunctionCalls<'_, 'a, '_> {
-    /// Components of a function or record that pass a test.
+    /// The components of a function or record that pass a test, in declaration order, inherited ones included.
+    ///
+    /// The test gets the declaration and whether it is protected. `is_input` is the most common one.
+    ///
+    /// For a function these are inputs, outputs or protected variables, for a record its fields.
     pub(in crate::instance) fn formals(
         &self,
         callee: &Callee<'a>,
@@ -30,7 +37,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         found.collect()
     }
 
-    /// Does something in a frame of its own, with the arguments of a call bound to the inputs of its function.
+    /// Runs `f` in a frame of its own, in which the inputs of a function are locals with the values of the arguments.
+    ///
+    /// `None` if the arguments do not fit, after a message, or if `f` returns it.
+    /// The locals are removed afterwards.
     pub(in crate::instance) fn with_inputs<T>(
         &mut self,
         callee: &Callee<'a>,
@@ -43,7 +53,15 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         self.instance.in_frame(|s| s.calls().bind(callee, &inputs, positional, named, span).and_then(|()| f(s)))
     }
 
-    /// Binds arguments to inputs in a fresh frame; defaults may use inputs before them.
+    /// Binds arguments to inputs in the present frame, which must be a fresh one.
+    ///
+    /// A default may read inputs that are declared before it. `None` after a message.
+    /// Messages are reported for too many arguments, for unknown names, and for inputs without a value.
+    ///
+    /// `formals` are the inputs or fields in the order of their declaration, `positional` and `named` the arguments.
+    /// Arguments are checked against the declared types. Bounds are checked for values and defaults.
+    /// A number outside of the declared bounds is reported, and the call goes on.
+    /// Each argument is bound once: named ones are taken for the inputs that positional ones leave.
     pub(in crate::instance) fn bind(
         &mut self,
         callee: &Callee<'a>,
@@ -70,6 +88,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
         let mut positional = positional.into_iter();
         for f in formals {
+            // A positional argument counts more than a named one for the same input; this is not reported as an error.
             let given =
                 positional.next().or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v.clone()));
             let given_here = given.is_some();
@@ -89,6 +108,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                 },
             };
             let place = match given_here {
+                // A bound violated by a default is shown at the default, not at the call.
                 true => span,
                 false => self.instance.names().reached(f.view.scope, f.index).binding.map_or(span, |b| b.expr.span),
             };
@@ -98,7 +118,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(())
     }
 
-    /// A number given to an input must lie within the bounds of its declaration; reported once however often it is called.
+    /// Reports a number that lies outside of `min` and `max` in the declaration of an input.
+    ///
+    /// Only known numbers and literal bounds are compared. The same message is reported once, however often the
+    /// function is called. It does not stop the call.
     pub(in crate::instance) fn check_bounds(
         &mut self,
         callee: &Callee<'a>,
@@ -123,7 +146,14 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
-    /// Checks an argument against the declared type and number of dimensions.
+    /// Checks an argument against the declared type and number of dimensions of an input.
+    ///
+    /// Integers become Reals where a Real is declared. Sizes are not compared here.
+    /// Records pass unchecked, because they may come from a class with the same fields. `None` after a message.
+    ///
+    /// `callee` and `f` name the function and the input in messages. `span` is the call.
+    /// An input that is a function accepts nothing else; the caller handles matching arguments before.
+    /// Enumerations must be the same type. External objects and Strings must be such values.
     pub(in crate::instance) fn fit_argument(
         &mut self,
         callee: &Callee<'a>,
@@ -148,6 +178,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             }
             LookupResult::Component(..) => None,
         };
+        // Only predefined types and types based on them are checked; array types and records end here.
         let Some(b) = wanted else { return Some(value) };
         let declared = f.component.subscripts.len();
         if value.dims().len() != declared {
@@ -184,7 +215,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(if b == BuiltinType::Real { value.with_type(ScalarType::Real) } else { value })
     }
 
-    /// The declared default: `None` on failure, `Some(None)` when there is none.
+    /// The default of an input, evaluated in the frame of the call.
+    ///
+    /// `Some(None)` if it has none; `None` after a message.
+    /// A record without a default is built from the defaults of its fields.
     pub(in crate::instance) fn default_value(&mut self, f: &FormalParameter<'a>) -> Option<Option<ModelicaValue>> {
         let reached = self.instance.names().reached(f.view.scope, f.index);
         match reached.binding {
@@ -205,6 +239,9 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
+    /// A record built from the defaults of its fields.
+    ///
+    /// `Some(None)` if a field has no default or the class is no record. `None` does not occur.
     pub(in crate::instance) fn default_record(&mut self, class: &ClassRef<'a>) -> Option<Option<ModelicaValue>> {
         let template = self.instance.names().template(class.class, class.parent);
         if !matches!(template.kind, ClassKind::Record { .. }) {
@@ -221,7 +258,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     }
 }
 
-/// An attribute that is written as a number.
+/// An attribute that a declaration gives as a literal number: 0 for `min` in `Real x(min = 0)`.
+/// `None` if it is missing or any other expression.
 pub(in crate::instance) fn declared_number(component: &ast::ComponentDeclaration, attribute: &str) -> Option<f64> {
     let arguments = &component.modification.as_ref()?.arguments;
     let value = arguments.iter().find_map(|argument| match &argument.kind {
@@ -235,6 +273,7 @@ pub(in crate::instance) fn declared_number(component: &ast::ComponentDeclaration
     value?.as_number()
 }
 
+/// Whether a component of a function is an input: public, and declared `input`.
 pub(in crate::instance) fn is_input(c: &ast::ComponentDeclaration, protected: bool) -> bool {
     !protected && c.prefix.causality == Some(CausalityPrefix::Input)
 }

@@ -1,4 +1,8 @@
 //! Built-in operators and functions (MLS 3.7, 10.3).
+//!
+//! [`BuiltinCalls`] gets a call by name and returns its value. [`BuiltinCalls::builtin_call`] is the entry.
+//! Most functions evaluate their arguments and build an expression in the pool, which folds known numbers.
+//! Operators that depend on the run (`der`, `pre`, `sample`, `initial`) are refused where values must be known.
 
 use crate::instance::value::{ModelicaValue, size_text, wider};
 use crate::instance::{BuiltinCalls, LookupContext};
@@ -9,7 +13,8 @@ use bramah_syntax::ast::{ComponentReference, Expr, ExprKind, Ident};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
-/// Mathematical functions of one argument.
+/// The mathematical function of one argument with this name (MLS 3.7.3). `None` for any other name.
+/// The functions of two arguments and those that raise events are handled in `builtin_value`.
 fn mathematical(name: &str) -> Option<UnaryFunction> {
     Some(match name {
         "abs" => UnaryFunction::Abs,
@@ -31,15 +36,17 @@ fn mathematical(name: &str) -> Option<UnaryFunction> {
     })
 }
 
-/// Flow that counts at least, in the unit of the connector's flow, so that what it carries is determined where nothing flows:
-/// far below what a solver resolves. A watt of heat needs an enthalpy of 1e10 J/kg to pass with it.
+/// The flow used in `semiLinear` where there is none, in the unit of the connector's flow.
+///
+/// It makes the value determined at zero flow. It is far below what a solver resolves.
+/// To pass 1 W it would need a specific enthalpy of 1e10 J/kg.
 const LEAST_FLOW: f64 = 1e-10;
 
-/// Names that are built in and valid, but not supported.
+/// Built-in functions of Modelica that are not supported: `spatialDistribution` and the clocked operators (MLS 16).
 const UNSUPPORTED: [&str; 8] =
     ["spatialDistribution", "previous", "hold", "subSample", "superSample", "shiftSample", "backSample", "interval"];
 
-/// The arguments that a built-in function takes by name; MLS names them for these alone.
+/// The names under which a built-in function takes arguments. Empty for most: they take them by position only.
 fn named_arguments(name: &str) -> &'static [&'static str] {
     match name {
         "homotopy" => &["actual", "simplified"],
@@ -48,7 +55,8 @@ fn named_arguments(name: &str) -> &'static [&'static str] {
     }
 }
 
-/// How many arguments a built-in function takes by place, where the function itself does not count them.
+/// How many positional arguments a built-in function takes.
+/// `None` for functions that check the number themselves when they are evaluated.
 fn count_of(name: &str) -> Option<std::ops::RangeInclusive<usize>> {
     Some(match name {
         "initial" | "terminal" | "getInstanceName" => 0..=0,
@@ -62,7 +70,15 @@ fn count_of(name: &str) -> Option<std::ops::RangeInclusive<usize>> {
 }
 
 impl<'a> BuiltinCalls<'_, 'a, '_> {
-    /// A built-in function; `None` if the name is not one, `Some(None)` after a message.
+    /// The value of a call of a built-in function.
+    ///
+    /// `None` if there is no built-in function of this name. `Some(None)` after a message.
+    /// Names of two parts are only `Connections.isRoot`, `Connections.rooted` and `Connections.inflow`.
+    ///
+    /// The name and the number of arguments are checked here, the evaluation is done by `builtin_value`.
+    /// Named arguments are an error for functions that do not take any.
+    /// `function` may be a name with a leading dot.
+    /// A function that is valid in Modelica but not supported gives a message that says so.
     pub(in crate::instance) fn builtin_call(
         &mut self,
         function: &'a ComponentReference,
@@ -84,7 +100,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
             return None;
         }
         let first = function.parts[0].name.name;
-        // `.sin(u)`: a built-in function, unless a class of the top level bears its name
+        // `.sin(u)` is the built-in function, unless a top-level class has that name.
         if function.global && self.instance.library.top(first).is_some() {
             return None;
         }
@@ -111,6 +127,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
         let value = self.builtin_value(function, args, named, view, span)?;
         let takes = named_arguments(name);
+        // Checked after the evaluation, whose messages are more precise; the check only finds names that nobody read.
         match named.iter().find(|(n, _)| !takes.contains(&n.name.as_str())) {
             Some((unknown, _)) if value.is_some() => {
                 let message = format!("`{name}` has no argument `{}`", unknown.name);
@@ -125,7 +142,13 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    /// The value of a call by the name of its function; `None` if that is not built in.
+    /// The value of a call by the name of its function, without checks of names and numbers of arguments.
+    /// `None` if the function is not built in. `Some(None)` after a message.
+    ///
+    /// Operators with events or memory: `pre`, `edge`, `change`, `sample`, `initial`, `terminal`, `delay`.
+    /// Operators on connectors: `inStream`, `actualStream`, `cardinality`.
+    /// Functions on arrays, reductions, rounding, and the mathematical functions of one argument.
+    /// Each function checks the number of its arguments if that is not done before.
     fn builtin_value(
         &mut self,
         function: &'a ComponentReference,
@@ -138,8 +161,11 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(match name {
             "der" => self.one(name, args, view, span).and_then(|v| self.der(&v, span)),
             "noEvent" => self.without_events(args.first(), name, view, span),
+            // The first argument of `smooth(p, expr)` only tells how smooth `expr` is; it is not needed here.
             "smooth" => self.without_events(args.get(1), name, view, span),
             "pre" => {
+                // In an algorithm section `pre(x)` means the variable, not the value that the section has assigned so
+                // far.
                 let value = self.instance.in_mode(|m| m.before = true, |s| s.builtins().one(name, args, view, span));
                 value.and_then(|v| self.pre(&v, span))
             }
@@ -179,7 +205,11 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         })
     }
 
-    /// A mathematical function called by its full name, as `Modelica.Math.sin`.
+    /// A mathematical function called by the name of a library function, as `Modelica.Math.sin`.
+    ///
+    /// `name` is the function behind `external "builtin"`. A single named argument, as in `sin(u = x)`, is accepted.
+    /// `None` after a message, if the function is not known.
+    /// `atan2` has two arguments; every other one is looked up in the table of mathematical functions.
     pub(in crate::instance) fn named_mathematics(
         &mut self,
         name: &str,
@@ -205,7 +235,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    /// `cardinality(c)`: the number of connections of a port (MLS 3.7.4.3).
+    /// `cardinality(c)`: the number of `connect` equations that name the port `c` (MLS 3.7.4.3).
+    /// It is 0 while the network is not known yet. `None` after a message.
     fn cardinality(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let node = match args {
             [Expr { kind: ExprKind::Reference(r), .. }] => self.instance.evaluator().named_node(r, view),
@@ -216,6 +247,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(self.instance.evaluator().integer(f64::from(count)))
     }
 
+    /// Evaluates the only argument of a function. `None` after a message, if there is another number of arguments.
     fn one(&mut self, name: &str, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         match args {
             [a] => self.instance.evaluator().eval(a, view),
@@ -223,6 +255,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
+    /// Evaluates both arguments of a function. `None` after a message, if there is another number of arguments.
+    /// `name` is the function, for the message.
     fn two(
         &mut self,
         name: &str,
@@ -232,6 +266,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     ) -> Option<(ModelicaValue, ModelicaValue)> {
         match args {
             [a, b] => {
+                // Both are evaluated before `?`, so that the messages of both appear.
                 let (a, b) = (self.instance.evaluator().eval(a, view), self.instance.evaluator().eval(b, view));
                 Some((a?, b?))
             }
@@ -239,6 +274,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
+    /// Evaluates an argument so that its relations raise no events: `noEvent(expr)`, `smooth(p, expr)` (MLS 3.7.5).
+    /// `None` after a message, if the argument is missing.
     fn without_events(
         &mut self,
         arg: Option<&'a Expr>,
@@ -252,6 +289,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         self.instance.in_mode(|m| m.no_event = true, |s| s.evaluator().eval(arg, view))
     }
 
+    /// `initial()` or `terminal()`: a Boolean that is true at the start or the end of the run.
+    /// A message where values must be known before the run.
     fn moment(&mut self, node: ExprNode, span: Span) -> Option<ModelicaValue> {
         if self.instance.eval.mode.constant {
             return self.instance.fail(Code::NotConstant, "this is not known before the run", span);
@@ -259,7 +298,13 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(ModelicaValue::Scalar(self.instance.exprs.intern(node), ScalarType::Boolean))
     }
 
-    /// `der` of any expression, by the chain rule where it is not a plain variable.
+    /// `der(v)` of any Real value, element by element (MLS 3.7.4).
+    ///
+    /// Expressions are differentiated by the chain rule: `der(x * y)` is `der(x) * y + x * der(y)`.
+    /// `None` after a message: for other types, and for what changes at events only.
+    ///
+    /// - The derivative of a continuous variable is a symbol; which variables are states is decided later.
+    /// - Parameters and constants have the derivative 0.
     fn der(&mut self, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         if self.instance.eval.mode.constant {
             return self.instance.fail(Code::NotConstant, "a derivative is not known before the run", span);
@@ -285,14 +330,19 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(value.with_type(ScalarType::Real))
     }
 
+    /// The derivative of an expression with respect to time. `None` if it has none.
+    /// Second derivatives are not supported: `der(x)` in the expression gives `None`.
+    /// Derivatives of discrete variables do not exist, so an expression with one gives `None`.
     fn der_scalar(&mut self, e: ExprId) -> Option<ExprId> {
-        // Variabilities are read before the pool is borrowed for the derivative.
+        // The closure below reads variabilities while the pool is taken out of the instance, so they are computed
+        // first.
         self.instance.variability(e);
         let mut pool = std::mem::take(&mut self.instance.exprs);
         let result = pool.time_derivative(e, &mut |pool, leaf| match leaf {
             DerivativeLeaf::Var(v) => match self.instance.leaf_variability(v) {
                 Variability::Continuous => Some(pool.der(v)),
                 Variability::Discrete => None,
+                // Parameters and constants do not change.
                 _ => Some(Exprs::ZERO),
             },
             DerivativeLeaf::Der(_) => None,
@@ -301,6 +351,10 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         result.ok()
     }
 
+    /// `pre(v)`: the value before the present event, element by element (MLS 3.7.5).
+    /// `None` after a message, unless each element is a variable or a number.
+    ///
+    /// A number stays as it is. Expressions have no value before the event, because nobody stores them.
     fn pre(&mut self, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         let mut failed = self.instance.eval.mode.constant;
         let value = v.map(&mut |e, _| match self.instance.exprs.node(e) {
@@ -317,6 +371,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(value)
     }
 
+    /// `edge(b)` or `change(v)` (MLS 3.7.5): `b and not pre(b)`, or `v <> pre(v)`. `None` after a message.
+    /// The result is Boolean. That `edge` gets a Boolean is not checked here.
     fn changes(&mut self, name: &str, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         let before = self.pre(v, span)?;
         let value = if name == "edge" {
@@ -330,6 +386,13 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         value.map(|v| retyped(&v, ScalarType::Boolean))
     }
 
+    /// `sample(start, interval)`: true at `start` and after each `interval` (MLS 3.7.5).
+    /// `None` after a message: both must be parameters, and the interval positive.
+    /// In expressions with parameters by value it is refused, because it depends on time.
+    ///
+    /// ```text
+    /// when sample(0, 0.1) then ... end when;   // at 0, 0.1, 0.2, ...
+    /// ```
     fn sample(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let (start, interval) = self.two("sample", args, view, span)?;
         let (Some((s, _)), Some((i, _))) = (start.scalar(), interval.scalar()) else {
@@ -351,7 +414,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(ModelicaValue::Scalar(self.instance.exprs.sample(s, i), ScalarType::Boolean))
     }
 
-    /// The simple name of the model that runs, and the components from it to the place of the call (MLS 3.7.4.3).
+    /// `getInstanceName()`: the simple name of the model, followed by the components down to the call (MLS 3.7.4).
+    /// In the component `b.c` of `Package.Model` this is `Model.b.c`.
     fn instance_name(&self, view: LookupContext) -> String {
         let model = self.instance.library.class(self.instance.scope(self.instance.root).template.class).name.name;
         match self.instance.scope(view.scope).name.as_str() {
@@ -360,7 +424,10 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    /// `inStream(h)`, `actualStream(h)`, `Connections.inflow(h)`.
+    /// `inStream(h)`, `actualStream(h)` or `Connections.inflow(h)`, for a stream variable or an array of them (MLS 15).
+    /// `None` after a message, if the argument is no stream variable of a connector with a flow variable.
+    /// `name` is the function without `Connections.`. An array gives an array of results.
+    /// In expressions with parameters by value it is refused: streams depend on the run.
     fn stream(&mut self, name: &str, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let value = self.one(name, args, view, span)?;
         if self.instance.eval.mode.constant {
@@ -391,10 +458,16 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
             });
         }
         let mut results = results.into_iter();
+        // The scalars were collected in the order in which `map` visits them.
         Some(value.map(&mut |e, _| results.next().unwrap_or(e)))
     }
 
-    /// `delay(expression, time)`; the largest time as a third argument says nothing that a fixed time does not.
+    /// `delay(expr, time)` (MLS 3.7.4): the value of `expr` before `time` seconds.
+    ///
+    /// The delay must be fixed during the run. A third argument, the longest delay, is then only checked.
+    /// `None` after a message.
+    ///
+    /// The result is Real.
     fn delay(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let ([delayed, time] | [delayed, time, _]) = args else {
             return self.instance.fail(Code::BadCall, "`delay` takes an expression and a time", span);
@@ -424,6 +497,9 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(delayed.map(&mut |e, _| self.instance.exprs.delay(e, time)).with_type(ScalarType::Real))
     }
 
+    /// `homotopy(actual, simplified)` (MLS 3.7.4.4), with positional or named arguments.
+    /// Both must have the same shape. `None` after a message.
+    /// The initialization starts with `simplified` and moves to `actual`; in the flat model both are kept.
     fn homotopy_call(
         &mut self,
         args: &'a [Expr],
@@ -442,7 +518,14 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         value.or_else(|| self.instance.operators().sizes_differ(&a, &s, span))
     }
 
-    /// `semiLinear(x, k+, k-) = if x >= 0 then k+*x else k-*x`
+    /// `semiLinear(x, up, down)`: `if x >= 0 then up * x else down * x` (MLS 3.7.4.5). `None` after a message.
+    ///
+    /// The condition `x >= 0` raises an event unless it is suppressed.
+    /// The exchange flow is added only if a slope changes continuously; known slopes need none.
+    ///
+    /// ```text
+    /// H_flow = semiLinear(m_flow, inStream(h), h);
+    /// ```
     fn semi_linear(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let values: Option<Vec<ExprId>> = args
             .iter()
@@ -459,7 +542,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         };
         let (a, b) = (self.instance.exprs.mul(up, x), self.instance.exprs.mul(down, x));
         let value = self.instance.exprs.if_(c, a, b);
-        // where nothing flows the slopes of unknowns are equal (MLS 3.7.4.5): a flow far below others says so
+        // At zero flow both slopes do not matter, and unknown slopes would stay undetermined. MLS 3.7.4.5 makes them
+        // equal then. A tiny exchange flow does that without a special case.
         let fixed = [up, down].iter().all(|&e| self.instance.variability(e) <= Variability::Discrete);
         if fixed {
             return Some(ModelicaValue::Scalar(value, ScalarType::Real));
@@ -469,6 +553,9 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(ModelicaValue::Scalar(self.instance.exprs.add(value, exchange), ScalarType::Real))
     }
 
+    /// Applies a mathematical function to a number, or to each element of an array.
+    /// The result is Real, except that `abs` keeps the type and `sign` gives Integers. `None` after a message.
+    /// `abs` and `sign` raise no events here.
     fn mathematics(&mut self, op: UnaryFunction, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         match v.element_type() {
             Some(ScalarType::Real | ScalarType::Integer) => {}
@@ -484,6 +571,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         })
     }
 
+    /// Applies a function of two numbers to two values of equal shape; the result is Real. `None` after a message.
+    /// Used for `atan2`.
     fn real_pair(
         &mut self,
         op: BinaryFunction,
@@ -495,7 +584,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         value.map(|v| v.with_type(ScalarType::Real)).or_else(|| self.instance.operators().sizes_differ(a, b, span))
     }
 
-    /// Whole part of a quotient with the events that Modelica asks for (MLS 3.7.2).
+    /// The largest whole number not above an expression.
+    /// If the expression changes continuously, an event is raised when the result changes (MLS 3.7.2).
     fn whole(&mut self, e: ExprId) -> ExprId {
         if self.instance.eval.mode.no_event
             || self.instance.eval.mode.procedure
@@ -507,11 +597,14 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
+    /// `floor`, `ceil` or `integer` of a number, or of each element of an array. `None` after a message.
+    /// `integer` gives Integers. `floor` and `ceil` keep the type of the argument.
     fn rounding(&mut self, name: &str, v: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         if !matches!(v.element_type(), Some(ScalarType::Real | ScalarType::Integer)) {
             return self.instance.evaluator().wrong_type("a number", v, span);
         }
         let value = v.map(&mut |e, _| {
+            // `ceil(x)` is `-floor(-x)`, so that one function handles the events.
             if name == "ceil" {
                 let turned = self.instance.exprs.neg(e);
                 let floor = self.whole(turned);
@@ -523,6 +616,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(if name == "integer" { retyped(&value, ScalarType::Integer) } else { value })
     }
 
+    /// `div`, `mod` or `rem` of two values of equal shape (MLS 3.7.2). `None` after a message.
+    /// `div` and `rem` round the quotient towards zero, `mod` rounds it down.
     fn division(&mut self, name: &str, a: &ModelicaValue, b: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         let value = a.zip(b, &mut |x, y, _| {
             let quotient = self.instance.exprs.div(x, y);
@@ -536,9 +631,11 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         value.or_else(|| self.instance.operators().sizes_differ(a, b, span))
     }
 
-    /// Towards zero.
+    /// An expression rounded towards zero, as `div` needs it.
+    /// For a positive value that is the floor, for a negative one the ceiling.
     fn truncated(&mut self, e: ExprId) -> ExprId {
         let turned = self.instance.exprs.neg(e);
+        // Rounding down and rounding up raise events at the same values, so both may stand in the expression.
         let (down, up) = (self.whole(e), self.whole(turned));
         let up = self.instance.exprs.neg(up);
         let quiet = self.instance.eval.mode.no_event
@@ -552,6 +649,9 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         self.instance.exprs.if_(positive, down, up)
     }
 
+    /// `min` or `max`: of the elements of one array, or of two values of equal shape (MLS 10.3.4).
+    /// `None` after a message.
+    /// The function is recognized by its name, which is `min` or `max`.
     fn extremum(
         &mut self,
         function: &'a ComponentReference,
@@ -576,7 +676,15 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    /// `sum`, `product`, `min`, `max` over values.
+    /// Combines values by `sum`, `product`, `min` or `max`; also `array`, which stacks them (MLS 10.3.4).
+    ///
+    /// Without values the result is the neutral element: 0, 1, and the largest or smallest Real number.
+    /// `None` after a message, if the shapes differ or the function is no reduction.
+    ///
+    /// `values` are the elements of the array, or the values of a comprehension, in order.
+    /// Elements may be arrays themselves, which are then combined element by element.
+    /// The result has the wider type of the values.
+    /// Shapes must be equal for all values.
     pub(in crate::instance) fn reduction(
         &mut self,
         function: &'a ComponentReference,
@@ -615,6 +723,16 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(result)
     }
 
+    /// The functions of arrays (MLS 10.3): `size`, `zeros`, `fill`, `cat`, `transpose` and so on.
+    ///
+    /// `None` after a message, if number, shapes or values of the arguments do not fit the function.
+    ///
+    /// `size` and `ndims` of a component use its declared sizes, so that the value need not be known.
+    /// The matrix functions check the number of dimensions; others report arguments that do not fit.
+    ///
+    /// `name` is the function. `array` is `{...}` as a function, and `promote` is used inside of the language
+    /// definition.
+    /// Arguments are evaluated in order, and each function takes them by position.
     fn array_function(
         &mut self,
         name: &str,
@@ -623,6 +741,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         span: Span,
     ) -> Option<ModelicaValue> {
         match name {
+            // These take sizes only, which must be known; in functions they may depend on known arguments.
             "zeros" | "ones" | "identity" => {
                 let dims: Option<Vec<usize>> = args.iter().map(|a| self.dimension_in(a, view)).collect();
                 let dims = dims?;
@@ -645,6 +764,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
             }
             _ => {}
         }
+        // Sizes of components are known without their values, so the argument need not be evaluated.
         if let ("size" | "ndims", Some(of)) = (name, args.first())
             && let Some(dims) = self.instance.evaluator().declared_dims(of, view)
         {
@@ -674,6 +794,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
                 self.instance.evaluator().concatenate(k, values[1..].to_vec(), span)
             }
             ("transpose", 1) if first.dims().len() == 2 => Some(transposed(first)),
+            // `symmetric(A)` copies the upper triangle to the lower one.
             ("symmetric", 1) if first.dims().len() == 2 => {
                 let n = first.dims()[1];
                 let t = transposed(first);
@@ -706,7 +827,10 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    /// `ndims(a)`, `size(a)` or `size(a, k)` of sizes that are known.
+    /// `ndims(a)`, `size(a)` or `size(a, k)` for an array with the sizes `dims` (MLS 10.3.1). `None` after a message.
+    ///
+    /// Without a dimension `k` the result is the vector of all sizes. `along` is the expression for `k`, which must be
+    /// known.
     fn sizes(
         &mut self,
         name: &str,
@@ -736,7 +860,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    /// A size: known before the run, or known inside the function being evaluated.
+    /// A size as argument. Outside of functions it must be known before the run.
+    /// Inside a function it must be known from the arguments, otherwise `not_inline` is set. Negative sizes count as 0.
     fn dimension_in(&mut self, e: &'a Expr, view: LookupContext) -> Option<usize> {
         if self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure {
             return self.instance.evaluator().dimension(e, view);
@@ -745,6 +870,9 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(x.max(0.0) as usize)
     }
 
+    /// A value as an array with `n` dimensions: sizes of 1 are appended (`promote`, `matrix`; MLS 10.3.2).
+    /// `matrix` also drops sizes of 1 if there are more than two dimensions. `None` after a message.
+    /// `promote(A, n)` adds dimensions at the end. Its values stay in row-major order.
     fn promote(&mut self, v: &ModelicaValue, n: usize, span: Span) -> Option<ModelicaValue> {
         let mut dims = v.dims().to_vec();
         if n == 2 && dims.len() > 2 {
@@ -759,6 +887,9 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(ModelicaValue::array(dims, v.elements().to_vec()))
     }
 
+    /// `linspace(from, to, n)`: `n` Reals at equal distances, both ends included (MLS 10.3.3).
+    /// `None` after a message, if `n` is below 2.
+    /// The third argument must be known. The limits may be symbolic.
     fn linspace(&mut self, values: &[ModelicaValue], count: Option<f64>, span: Span) -> Option<ModelicaValue> {
         let n = count.filter(|n| *n >= 2.0);
         let (Some((a, _)), Some((b, _)), Some(n)) = (values[0].scalar(), values[1].scalar(), n) else {
@@ -780,6 +911,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(ModelicaValue::array(vec![n], elements))
     }
 
+    /// `cross(a, b)`: the cross product of two vectors of size 3. The caller has checked the sizes.
+    /// `None` if the types do not fit.
     fn cross(&mut self, a: &ModelicaValue, b: &ModelicaValue) -> Option<ModelicaValue> {
         let s = |v: &ModelicaValue, i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
         let ty = wider(a.element_type()?, b.element_type()?)?;
@@ -792,6 +925,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(ModelicaValue::array(vec![3], elements))
     }
 
+    /// `skew(x)`: the 3 by 3 matrix with `skew(x) * y = cross(x, y)`. The caller has checked the size.
+    /// Its entries are those of the vector, with signs.
     fn skew(&mut self, v: &ModelicaValue) -> Option<ModelicaValue> {
         let ty = v.element_type()?;
         let s = |i: usize| v.elements()[i].scalar().map_or(Exprs::ZERO, |(e, _)| e);
@@ -802,6 +937,10 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         Some(ModelicaValue::array(vec![3, 3], entries.into_iter().map(|e| ModelicaValue::Scalar(e, ty)).collect()))
     }
 
+    /// `String(v)`: the text of a value (MLS 3.7.1). Values that are not known become parts to be inserted later.
+    /// Formats and minimum lengths are accepted and not applied. `None` after a message.
+    /// Further arguments, such as `significantDigits`, do not change the result.
+    /// A String stays as it is. Arrays and records are errors.
     fn string(&mut self, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let Some(first) = args.first() else {
             return self.instance.fail(Code::BadCall, "`String` needs a value", span);
@@ -809,6 +948,7 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         match self.instance.evaluator().eval(first, view)? {
             ModelicaValue::Scalar(e, ScalarType::Enumeration(i)) => {
                 let known = self.instance.exprs.as_num(e).and_then(|x| {
+                    // An enumeration value is shown by the name of its literal.
                     self.instance.enumerations[i as usize].literals.get(x as usize - 1).map(|l| l.as_str())
                 });
                 Some(match known {
@@ -822,7 +962,8 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
         }
     }
 
-    /// Reports a call of something that is no function.
+    /// Reports a call of something that is no function, with the most similar built-in function as a suggestion.
+    /// `pow` gets a hint of its own, because programmers look for it.
     pub(in crate::instance) fn unknown_function(&mut self, function: &ComponentReference) {
         let name: Vec<&str> = function.parts.iter().map(|p| p.name.name.as_str()).collect();
         let name = name.join(".");
@@ -846,12 +987,14 @@ impl<'a> BuiltinCalls<'_, 'a, '_> {
     }
 }
 
+/// The transposed matrix.
 fn transposed(v: &ModelicaValue) -> ModelicaValue {
     let (n, m) = (v.dims()[0], v.dims()[1]);
     ModelicaValue::array(vec![m, n], (0..n * m).map(|i| v.elements()[(i % n) * m + i / n].clone()).collect())
 }
 
-/// The same scalars under another type.
+/// The same scalars as values of another type. Strings and records stay as they are.
+/// It is used where the meaning changes but not the number, as for a Boolean stored as 0 or 1.
 pub(in crate::instance) fn retyped(v: &ModelicaValue, ty: ScalarType) -> ModelicaValue {
     match v {
         ModelicaValue::Scalar(e, _) => ModelicaValue::Scalar(*e, ty),
@@ -862,6 +1005,7 @@ pub(in crate::instance) fn retyped(v: &ModelicaValue, ty: ScalarType) -> Modelic
     }
 }
 
+/// The same scalars as Integers, for `Integer(e)`, which gives the number of an enumeration literal.
 fn as_integer(v: ModelicaValue) -> ModelicaValue {
     retyped(&v, ScalarType::Integer)
 }

@@ -1,5 +1,7 @@
-//! Calls of a user's own C functions, where he has allowed them: their signatures by the declarations in Modelica
-//! (MLS 12.9.1), and what their annotations name (MLS 12.9.4).
+//! Calls of a user's own C functions, with the feature `fmi` and only if the user has allowed them.
+//!
+//! The C signature follows from the declarations in Modelica (MLS 12.9.1). Annotations name sources and libraries (MLS
+//! 12.9.4). A wrapper in C is compiled, loaded, and called like any other external function.
 
 use crate::instance::ExternalCalls;
 use crate::instance::call::Callee;
@@ -13,10 +15,13 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::ffi::OsString;
 use std::sync::Arc;
 
-/// Where libraries for this machine lie below those for all (MLS 12.9.4).
+/// The folder of libraries for this machine, below that of libraries for all machines (MLS 12.9.4).
 const MACHINE: &str = "linux64";
 
 impl<'a> ExternalCalls<'_, 'a, '_> {
+    /// Calls a C function of the user. `None` after a message, if this is not allowed or not possible.
+    /// `--external` on the command line allows it. Without that the message explains how.
+    /// `positional` and `named` are the evaluated arguments.
     pub(in crate::instance) fn call_c(
         &mut self,
         callee: &Callee<'a>,
@@ -35,6 +40,10 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         self.instance.calls().with_inputs(callee, positional, named, span, |s| s.externals().carry_out_c(callee, span))
     }
 
+    /// Compiles and calls a C function. The inputs are bound already. `None` after a message.
+    ///
+    /// Only calls in C are supported, not Fortran.
+    /// The wrapper is compiled at the first call with this signature and reused afterwards.
     fn carry_out_c(&mut self, callee: &Callee<'a>, span: Span) -> Option<ModelicaValue> {
         let is_c = !external_text(callee)?.trim_start().starts_with("\"FORTRAN");
         let Some(call) = self.c_call(callee).filter(|_| is_c) else {
@@ -45,12 +54,14 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         self.prepare_locals(callee)?;
         let signature = self.signature(&call, callee, span)?;
         let wrapper = signature.wrapper();
+        // The text of the wrapper identifies the function: equal text means the same function and signature.
         let function = match self.instance.functions.compiled_c.get(&wrapper) {
             Some(known) => known.clone(),
             None => self.compiled(&signature, &wrapper, callee, span)?,
         };
         let mut scalars = Vec::new();
         for argument in &call.arguments {
+            // Strings are part of the wrapper, and outputs are not handed over; only numbers are arguments.
             if let (ExternalArgument::Name(name), Some(value)) = (argument, self.input_of_c(argument))
                 && !self.is_output(callee, *name)
                 && !matches!(value, ModelicaValue::Text(_))
@@ -61,7 +72,12 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         self.external_function(function, &wrapper, &call, callee, &scalars)
     }
 
-    /// Compiles a wrapper, and says what was run for it.
+    /// Compiles the wrapper of a C function and loads it. `None` after a message.
+    ///
+    /// A second message tells the user that C code runs and which command compiled it.
+    /// The result is kept under the text of the wrapper.
+    /// `wrapper` is the C text for `signature`. The message uses the Modelica name of the function.
+    /// An error of the compiler or a missing function is reported with the reason.
     fn compiled(
         &mut self,
         signature: &CSignature,
@@ -70,6 +86,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         span: Span,
     ) -> Option<Arc<dyn ExternalFunction>> {
         let arguments = self.compiler_arguments(callee);
+        // Utilities are the C functions that Modelica defines for external code, as `ModelicaError`.
         let compiled = self.instance.library.compile_c(wrapper, c::UTILITIES, arguments);
         let ran = compiled.as_ref().map(|c| c.command.clone()).unwrap_or_default();
         match compiled.and_then(|compiled| c::bind(compiled, signature)) {
@@ -92,6 +109,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         }
     }
 
+    /// Whether a name is an output of the function.
     fn is_output(&mut self, callee: &Callee<'a>, name: bramah_syntax::symbol::Symbol) -> bool {
         self.instance
             .calls()
@@ -100,7 +118,12 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
             .any(|f| f.name == name)
     }
 
-    /// The types in C of a call's arguments.
+    /// The C signature of a call: kind and size of each argument and of the result (MLS 12.9.1).
+    ///
+    /// `None` after a message, if an argument has no counterpart in C or is not known.
+    /// Strings and sizes are written into the wrapper, so they must be known.
+    /// `call` is the call behind `external`, `span` the Modelica call for messages.
+    /// Arrays are passed with their number of elements.
     fn signature(&mut self, call: &CCall, callee: &Callee<'a>, span: Span) -> Option<CSignature> {
         let outputs = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(CausalityPrefix::Output));
         let mut arguments = Vec::new();
@@ -114,6 +137,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
                 }
                 ExternalArgument::Name(name) => match outputs.iter().find(|f| f.name == *name) {
                     Some(formal) => {
+                        // Outputs are arrays that the C function fills; their declared sizes tell how large they are.
                         let blank = self.instance.calls().declared_local(formal)?;
                         number(&blank).map(|(kind, n)| c::CArgument::Output(kind, n))
                     }
@@ -139,7 +163,10 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         Some(CSignature { name: call.name.clone(), result, arguments, include })
     }
 
-    /// Folders and libraries of the annotations, as the compiler takes them.
+    /// The arguments of the C compiler that the annotations ask for: header folders, library folders, libraries.
+    ///
+    /// A folder that is not named is the usual one of the package, as `Resources/Include` (MLS 12.9.4).
+    /// `Library` names become `-l` arguments, in the order of the annotation.
     fn compiler_arguments(&mut self, callee: &Callee<'a>) -> Vec<OsString> {
         let text = external_text(callee).unwrap_or_default();
         let package = callee.name.split('.').next().unwrap_or_default().to_owned();
@@ -158,6 +185,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
             made.push(argument);
         };
         headers.iter().chain(&sources).for_each(|path| flag("-I", path));
+        // The folder for this machine is searched before the one for all machines.
         for path in libraries.iter().flat_map(|path| [path.join(MACHINE), path.clone()]) {
             flag("-L", &path);
             flag("-Wl,-rpath,", &path);
@@ -167,20 +195,24 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     }
 }
 
-/// Whether a value is of numbers, of which kind and how many.
+/// The kind of numbers in a value, and how many they are; no count for a scalar. `None` for other values.
+/// Booleans and enumeration values are Integers in C.
 fn number(value: &ModelicaValue) -> Option<(CNumberType, Option<usize>)> {
     let kind = if value.element_type()? == ScalarType::Real { CNumberType::Real } else { CNumberType::Integer };
     let dims = value.dims();
     Some((kind, (!dims.is_empty()).then(|| dims.iter().product())))
 }
 
-/// The texts that an annotation has under a key: one, or several in braces.
+/// The Strings that an annotation gives under a key: `Library = "a"` or `Library = {"a", "b"}`.
+/// The first occurrence as a complete word counts. Empty if there is none.
+/// The text is searched, since annotations of external functions are kept as text.
 fn annotation_texts(text: &str, key: &str) -> Vec<String> {
     let mut rest = text;
     while let Some(at) = rest.find(key) {
         let before = rest[..at].chars().next_back();
         rest = &rest[at + key.len()..];
         let value = rest.trim_start();
+        // `Include` also occurs inside of `IncludeDirectory` and of longer names, which are not this key.
         let is_key = before.is_none_or(|c| !c.is_alphanumeric() && c != '_');
         if let Some(value) = value.strip_prefix('=').filter(|_| is_key) {
             let value = value.trim_start();
@@ -193,7 +225,9 @@ fn annotation_texts(text: &str, key: &str) -> Vec<String> {
     Vec::new()
 }
 
-/// Texts in quotes with their escapes resolved, up to the brace that closes a list, or the first one.
+/// The Strings in quotes at the beginning of a text, with their escapes resolved.
+/// With `list`, all up to the brace that closes the list, otherwise the first one only.
+/// Spaces and commas between the entries of a list are skipped. Anything else ends the list.
 fn quoted(text: &str, list: bool) -> Vec<String> {
     let (mut found, mut open): (Vec<String>, Option<String>) = (Vec::new(), None);
     let mut characters = text.chars();

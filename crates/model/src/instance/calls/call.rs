@@ -1,4 +1,8 @@
-//! Calls: built-in functions, record constructors, user functions (written out as expressions where that is possible).
+//! Calls of functions: built-in functions, record constructors, user functions.
+//!
+//! [`FunctionCalls`] gets the syntax of a call and returns its value.
+//! A user function is evaluated to an expression if its loops and conditions are known or can be merged.
+//! Otherwise it becomes a procedure. Calls with known arguments are just computed.
 
 use crate::instance::algorithm::StatementFlow;
 use crate::instance::builtin::retyped;
@@ -18,31 +22,45 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
-/// Deepest nesting of function calls that are written out.
+/// The deepest nesting of calls with symbolic arguments.
 const DEEPEST_INLINE: usize = 40;
-/// Most statements executed to write one call out.
+/// The most statements executed for one call with symbolic arguments.
 const MOST_STEPS: usize = 20_000;
-/// The same when all arguments are known, so that the call is simply carried out.
+/// The most statements executed for one call with known arguments.
 const MOST_KNOWN_STEPS: usize = 2_000_000;
-/// Deepest nesting when all arguments are known.
+/// The deepest nesting of calls with known arguments.
 const DEEPEST_KNOWN: usize = 150;
 
 /// A function ready to be called.
 pub(in crate::instance) struct Callee<'a> {
+    /// The scope of its body, in which its names are looked up.
     pub scope: ScopeId,
+    /// Its elements and bases.
     pub template: Rc<Template<'a>>,
+    /// Its full name, for messages and keys.
     pub name: String,
 }
 
-/// One declared input, output or local of a function.
+/// One input, output or protected variable of a function.
 pub(in crate::instance) struct FormalParameter<'a> {
+    /// Its name.
     pub name: Symbol,
+    /// Its declaration.
     pub component: &'a ast::ComponentDeclaration,
+    /// Its index in the template of the function.
     pub index: u32,
+    /// Where the names of its declaration are looked up.
     pub view: LookupContext,
 }
 
 impl<'a> FunctionCalls<'_, 'a, '_> {
+    /// The value of a call. `None` after a message.
+    ///
+    /// `function` is looked up as an input that is a function, then as a built-in function, a class, an enumeration
+    /// conversion, and a function in a component.
+    ///
+    /// Positional and named arguments are not evaluated yet, because some built-in functions take references or
+    /// evaluate their arguments in another mode.
     pub(in crate::instance) fn call(
         &mut self,
         function: &'a ComponentReference,
@@ -77,15 +95,17 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
-    /// Whether a class that is visible here bears the name of a built-in function, as after
-    /// `import Modelica.ComplexMath.abs`: it is nearer (MLS 5.3.1).
+    /// Whether a class visible at `view` has the name of a built-in function, as after `import
+    /// Modelica.ComplexMath.abs`. It is nearer than the built-in function (MLS 5.3.1).
     fn is_redefined(&mut self, function: &ComponentReference, view: LookupContext) -> bool {
         let [part] = function.parts.as_slice() else { return false };
         !function.global
             && matches!(self.instance.names().lookup_nested(view, part.name.name), Some(LookupResult::Class(_)))
     }
 
-    /// Calls a function some of whose inputs were given before.
+    /// Calls a function. `bound` are inputs given before by partial application. `None` after a message.
+    ///
+    /// A library function that stands for a built-in one, as `Modelica.Math.sin`, is evaluated as that.
     fn call_bound(
         &mut self,
         class: ClassRef<'a>,
@@ -101,7 +121,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
-    /// The built-in function that `external "builtin" y = sin(u)` stands for.
+    /// The built-in function that a library function stands for: `sin` for `external "builtin" y = sin(u)`.
     fn external_builtin(&self, class: &ClassRef<'a>) -> Option<String> {
         let ast::ClassBody::Long(body) = &self.instance.library.class(class.class).body else { return None };
         let called = body.external_text.as_deref()?.trim_start().strip_prefix("\"builtin\"")?;
@@ -109,7 +129,12 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(called.split('(').next()?.trim().to_string())
     }
 
-    /// A function named through a component, as in `oil.density(p)`.
+    /// A function named through a component, as in `oil.density(p)`. `None`, without a message, if there is none.
+    ///
+    /// ```text
+    /// oil.density(p)          // a function in the class of the component oil
+    /// oil.Medium.density(p)   // a function in a package inside
+    /// ```
     fn instance_function(&mut self, function: &ComponentReference, view: LookupContext) -> Option<ClassRef<'a>> {
         let LookupResult::Component(scope, index) = self.instance.names().lookup(view, function.parts[0].name.name)?
         else {
@@ -120,6 +145,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         for (k, part) in middle.iter().enumerate() {
             let crate::instance::InstanceNode::Object(s) = *self.instance.node(node) else { return None };
             let &i = self.instance.scope(s).template.by_name.get(&part.name.name)?;
+            // From the first class on, the rest of the name is looked up in classes.
             if matches!(self.instance.scope(s).template.elements[i as usize].kind, TemplateElementKind::Class(_)) {
                 let mut found = self.instance.names().lookup(LookupContext { scope: s, base: 0 }, part.name.name)?;
                 for next in middle[k + 1..].iter().chain([last]) {
@@ -137,6 +163,15 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
+    /// Evaluates the arguments, and calls a function or a constructor. `None` after a message.
+    ///
+    /// - An enumeration type converts an Integer.
+    /// - Record classes and external objects are constructed, operator records by their own constructors if one fits.
+    /// - Functions are called, element by element if arguments are arrays of what the inputs are.
+    ///
+    /// Other classes are reported.
+    /// Arguments that are bound already take the places of their inputs; positional ones fill the others.
+    /// Arguments that cannot be evaluated end the call; their messages are enough.
     fn call_class(
         &mut self,
         class: ClassRef<'a>,
@@ -150,7 +185,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         if let Some(BuiltinType::Enumeration(i)) = template.builtin {
             return self.enumeration_of(i, args, view, span);
         }
-        // a function without outputs only asserts
+        // A function without outputs is called for its assertions, whose texts need values as well.
         let text = gives_text(&template) || gives_nothing(&template);
         let positional: Option<Vec<ModelicaValue>> = args.iter().map(|a| self.argument(a, text, view)).collect();
         let mut by_name = Vec::new();
@@ -163,6 +198,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                 .elements
                 .iter()
                 .filter(|e| matches!(e.kind, TemplateElementKind::Component(c) if is_input(c, e.protected)));
+            // Positional arguments fill the inputs that partial application has left open (MLS 12.4.2.1).
             let open: Vec<Ident> = inputs
                 .filter(|e| bound.iter().all(|(n, _)| n.name != e.name))
                 .map(|e| Ident { name: e.name, span })
@@ -205,8 +241,13 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
-    /// An argument; whole numbers that parameters give are taken by value, for sizes and loops depend on them, and
-    /// whatever a text depends on.
+    /// Evaluates an argument. `None` after a message.
+    ///
+    /// Integer parameters are taken by value, because sizes and loops of the function may depend on them.
+    /// If the function returns a String (`text`), every parameter is: Strings are not part of the run.
+    ///
+    /// Inside of functions arguments are values already, so only calls outside of functions are concerned.
+    /// Parameters that get their value at initialization stay symbolic, except for Strings.
     fn argument(&mut self, e: &'a Expr, text: bool, view: LookupContext) -> Option<ModelicaValue> {
         let value = self.instance.evaluator().eval(e, view)?;
         if text && !value.dims().is_empty() && self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure {
@@ -226,6 +267,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             if outside
                 && open
                 && (text || !self.instance.found_at_start(id))
+                // A local keeps its symbolic value: evaluating it again would not give a number.
                 && !self.instance.eval.locals.iter().any(|(_, v)| v.scalar().is_some_and(|(l, _)| l == id))
             {
                 return self.instance.evaluator().constant(e, view);
@@ -234,6 +276,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(value)
     }
 
+    /// `Color(i)`: the conversion of an Integer to an enumeration value. `None` after a message.
     fn enumeration_of(&mut self, i: u32, args: &'a [Expr], view: LookupContext, span: Span) -> Option<ModelicaValue> {
         let [arg] = args else {
             return self.instance.fail(Code::BadCall, "a conversion to an enumeration takes one Integer", span);
@@ -241,7 +284,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(retyped(&self.instance.evaluator().eval(arg, view)?, ScalarType::Enumeration(i)))
     }
 
-    /// A value of a record class from its constructor.
+    /// The record that the constructor of a record class makes of its arguments (MLS 12.6).
+    /// The fields are in declaration order; constants are no inputs of the constructor. `None` after a message.
+    ///
+    /// Inputs of the constructor are the public fields. Fields that are not given take their declared values.
     pub(in crate::instance) fn construct(
         &mut self,
         callee: &Callee<'a>,
@@ -261,6 +307,17 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(ModelicaValue::Record(Rc::new(crate::instance::value::RecordValue { fields, class })))
     }
 
+    /// Calls a function with evaluated arguments. `None` after a message, or with `not_inline` set.
+    ///
+    /// External functions go to `external` or `c`. Others are evaluated to expressions first.
+    /// If that is not possible, and an argument is symbolic, the function becomes a procedure.
+    ///
+    /// Limits for statements and nesting stop functions that do not end. They are higher if all arguments are known,
+    /// because such a call is only computed.
+    /// Messages of an attempt that failed are dropped if a procedure is made instead.
+    /// `span` is the call. Arguments are bound to inputs when the body is evaluated.
+    ///
+    /// Functions that are known in Rust come first, then those in C, then those written in Modelica.
     pub(in crate::instance) fn call_function(
         &mut self,
         callee: &Callee<'a>,
@@ -282,6 +339,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             return self.instance.fail(Code::Partial, &message, span);
         }
         if callee.template.bases.iter().any(|b| has_external(b.ast)) {
+            // Only with the feature `fmi` can C code be compiled and called.
             #[cfg(feature = "fmi")]
             return self.instance.externals().call_c(callee, positional, named, span);
             #[cfg(not(feature = "fmi"))]
@@ -295,6 +353,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             return None;
         }
         let limit = if known { DEEPEST_KNOWN } else { DEEPEST_INLINE };
+        // Without known arguments the recursion may well end at run time, which a procedure can do.
         if self.instance.eval.depth >= limit {
             if known {
                 let message = format!("`{}` calls itself without end", callee.name);
@@ -308,8 +367,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             self.instance.eval.not_inline = true;
             return None;
         }
+        // If the attempt fails, the assertions that it left are removed again.
         let calls = self.instance.eval.calls.len();
         let work = self.instance.eval.work;
+        // The outermost call sets the budget for all calls inside of it.
         if self.instance.eval.depth == 0 {
             self.instance.eval.work = StatementBudget::allowed([MOST_STEPS, MOST_KNOWN_STEPS]);
         }
@@ -328,6 +389,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             self.instance.diagnostics.extend(messages);
             return value;
         }
+        // Known arguments leave nothing open: only the budget of statements can have stopped it.
         if known && !std::mem::take(&mut self.instance.eval.may_fail) {
             self.instance.diagnostics.extend(messages);
             let message = format!("`{}` does not come to an end", callee.name);
@@ -340,7 +402,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         self.instance.procedures().call_procedure(callee, positional, named, span)
     }
 
-    /// A call of a function without outputs whose assertions values that change decide: part of the procedure around it.
+    /// Calls a function without outputs whose assertions depend on values that change. `None` as above.
+    ///
+    /// In a procedure, the body becomes part of that procedure. In a function, the function must become a procedure.
+    /// In a model such a call is not supported.
     fn call_for_effect(
         &mut self,
         callee: &Callee<'a>,
@@ -360,7 +425,11 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         None
     }
 
-    /// Whether a function keeps to what functions may do (MLS 12.2).
+    /// Whether a function contains only what functions may contain (MLS 12.2). Reports a message otherwise.
+    /// Equations are not allowed, and inputs cannot be assigned.
+    /// Functions that passed are remembered. A function that did not is checked again and reported once.
+    /// A `when` or other statements that functions may not have are reported where they are executed.
+    /// The places in base classes are checked as well.
     fn well_formed(&mut self, callee: &Callee<'a>) -> bool {
         let class = callee.template.class;
         if self.instance.classes.checked_functions.contains(&class) {
@@ -398,17 +467,20 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
+    /// Whether all scalars in the values are known numbers.
     fn all_known(&self, values: &[ModelicaValue]) -> bool {
         values.iter().all(|v| self.known(v))
     }
 
+    /// Whether all scalars in a value are known numbers.
     fn known(&self, v: &ModelicaValue) -> bool {
         let mut scalars: Vec<ExprId> = Vec::new();
         v.scalars(&mut scalars);
         scalars.iter().all(|&e| self.instance.exprs.as_num(e).is_some())
     }
 
-    /// Carries the function out on symbolic values.
+    /// Evaluates the body of a function to expressions, in a frame of its own. `None` as for `call_function`.
+    /// The frame hides the locals of the caller, and relations in it raise no events.
     fn inline(
         &mut self,
         callee: &Callee<'a>,
@@ -417,12 +489,20 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         span: Span,
     ) -> Option<ModelicaValue> {
         let change = |m: &mut EvaluationMode| {
+            // Inside the body expressions are symbolic even if the caller is a procedure; the result becomes part of
+            // it.
             m.under_procedure |= m.procedure;
             m.procedure = false;
         };
         self.instance.in_mode(change, |s| s.in_frame(|s| s.calls().inline_body(callee, positional, named, span)))
     }
 
+    /// Binds the arguments, initializes the locals, executes the algorithm sections, and collects the outputs.
+    /// `None` as for `call_function`.
+    ///
+    /// `return` ends the execution. The sections of base classes come in the order of the bases.
+    /// The locals are removed by the frame of the caller.
+    /// An output without an assignment keeps its initial value.
     fn inline_body(
         &mut self,
         callee: &Callee<'a>,
@@ -432,6 +512,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     ) -> Option<ModelicaValue> {
         let inputs = self.formals(callee, is_input);
         self.bind(callee, &inputs, positional, named, span)?;
+        // Initial values may use other locals, so they are evaluated in the order of their dependence.
         let locals = self.formals(callee, |c, p| !is_input(c, p));
         for f in in_order_of_use(&locals) {
             let value = self.declared_local(f)?;
@@ -450,6 +531,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Self::outputs(outputs)
     }
 
+    /// The value of a call from its outputs: the value itself if there is one, else a tuple.
     pub(in crate::instance) fn outputs(mut outputs: Vec<ModelicaValue>) -> Option<ModelicaValue> {
         match outputs.len() {
             1 => outputs.pop(),
@@ -458,7 +540,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     }
 }
 
-/// The algorithm sections of a function, those of its bases included, with where their names are looked up.
+/// The algorithm sections of a function, those of its bases included, with the place to look up their names.
+/// A function has one section at most (MLS 12.2), but base classes may have one each.
 pub(in crate::instance) fn sections<'a>(callee: &Callee<'a>) -> Vec<(&'a [ast::Statement], LookupContext)> {
     let mut found = Vec::new();
     for (base, i) in callee.template.bases.iter().zip(0u32..) {
@@ -479,7 +562,8 @@ fn gives_nothing(template: &Template<'_>) -> bool {
             .any(|e| matches!(e.kind, TemplateElementKind::Component(c) if c.prefix.causality == Some(CausalityPrefix::Output)))
 }
 
-/// Whether a function has a text as an output.
+/// Whether a function has a String among its outputs.
+/// The type must be written as `String`: types that are based on it are not recognized.
 fn gives_text(template: &Template<'_>) -> bool {
     template.elements.iter().any(|e| match e.kind {
         TemplateElementKind::Component(c) => {
@@ -489,6 +573,7 @@ fn gives_text(template: &Template<'_>) -> bool {
     })
 }
 
+/// Whether a class has an `external` clause.
 fn has_external(class: &ast::Class) -> bool {
     matches!(&class.body, ast::ClassBody::Long(b) if b.external.is_some())
 }

@@ -1,5 +1,8 @@
-//! Calls of external functions: those that [`bramah_external`] knows by their C names are carried out, with the arguments
-//! of the C call in its order.
+//! Calls of external functions that [`bramah_external`] knows by their C names.
+//!
+//! The call behind `external` is parsed: it tells the C name and the order of the arguments (MLS 12.9).
+//! If all arguments are known, the function is computed at once. Otherwise the call stays in the flat model.
+//! The functions in `c` use the same parts for C code of the user.
 
 use crate::instance::ExternalCalls;
 use crate::instance::FunctionCalls;
@@ -15,30 +18,34 @@ use bramah_syntax::diag::Code;
 use bramah_syntax::symbol::Symbol;
 use std::sync::Arc;
 
-/// `result = name(arguments)`, as it stands behind `external`.
+/// The C call behind `external`: `result = name(arguments)`.
 pub(super) struct CCall {
+    /// The name of the C function.
     pub name: String,
-    /// The output to which the result goes.
+    /// The output that takes the result of the C function. `None` if it returns nothing.
     pub result: Option<Symbol>,
+    /// The arguments in the order of the call.
     pub arguments: Vec<ExternalArgument>,
 }
 
 /// An argument of a C call.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum ExternalArgument {
-    /// An input or output of the function.
+    /// An input, output or protected variable of the Modelica function.
     Name(Symbol),
-    /// A text.
+    /// A String literal.
     Text(String),
-    /// A number or truth value.
+    /// A number, or a Boolean as 0 or 1.
     Number(f64),
-    /// `size(name, dimension)`
+    /// `size(name, dimension)`, with the dimension counted from 1.
     Size(Symbol, usize),
-    /// Anything else.
+    /// Any other expression, which is not supported.
     Other,
 }
 
 impl ExternalArgument {
+    /// Parses one argument, without the spaces around it.
+    /// Booleans become 0 and 1: they are integers in C (MLS 12.9.1).
     fn parse(text: &str) -> Self {
         match text {
             "true" => ExternalArgument::Number(1.0),
@@ -52,12 +59,14 @@ impl ExternalArgument {
         }
     }
 
+    /// Parses `size(name, dimension)`. `None` for anything else.
     fn size(text: &str) -> Option<Self> {
         let (name, dimension) = text.strip_prefix("size(")?.strip_suffix(')')?.split_once(',')?;
         let dimension = dimension.trim().parse().ok().filter(|d| *d > 0)?;
         is_name(name.trim()).then(|| ExternalArgument::Size(Symbol::new(name.trim()), dimension))
     }
 
+    /// The name, if the argument is one.
     fn name(&self) -> Option<Symbol> {
         match self {
             ExternalArgument::Name(name) => Some(*name),
@@ -67,10 +76,13 @@ impl ExternalArgument {
 }
 
 impl CCall {
-    /// Parses what stands between `external` and its semicolon; without a call the function's own name, inputs and output
-    /// are meant (MLS 12.9).
+    /// Parses the text between `external` and its semicolon. A language string in front is skipped.
+    ///
+    /// `None` if there is no call: the function's own name, inputs and output are meant then (MLS 12.9), which is not
+    /// supported.
     fn parse(text: &str) -> Option<Self> {
         let text = text.trim_start();
+        // `external "C" y = f(x)`: the language in quotes is no part of the call.
         let text = text.strip_prefix('"').map_or(text, |t| t.split_once('"').map_or("", |(_, rest)| rest));
         let (head, rest) = text.split_once('(')?;
         let (result, name) = match head.split_once('=') {
@@ -88,7 +100,9 @@ impl CCall {
     }
 }
 
-/// What stands between commas, up to the bracket that closes.
+/// Splits arguments at their commas, up to the parenthesis that closes the list.
+/// Commas inside strings, parentheses, brackets and braces do not count.
+/// The closing parenthesis of the call must be in the text; what follows it is not read.
 fn arguments(text: &str) -> Vec<&str> {
     let (mut depth, mut begin, mut found, mut quoted) = (0, 0, Vec::new(), false);
     for (at, c) in text.char_indices() {
@@ -111,12 +125,13 @@ fn arguments(text: &str) -> Vec<&str> {
     found
 }
 
+/// Whether a text is an identifier.
 fn is_name(text: &str) -> bool {
     let letter = |c: char| c.is_ascii_alphanumeric() || c == '_';
     text.chars().all(letter) && text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_')
 }
 
-/// What stands behind `external`, annotations included.
+/// The text behind `external` in a function or one of its bases, annotations included. `None` if there is none.
 pub(super) fn external_text<'a>(callee: &Callee<'a>) -> Option<&'a str> {
     callee.template.bases.iter().find_map(|b| match &b.ast.body {
         ClassBody::Long(body) => body.external_text.as_deref(),
@@ -125,15 +140,18 @@ pub(super) fn external_text<'a>(callee: &Callee<'a>) -> Option<&'a str> {
 }
 
 impl<'a> ExternalCalls<'_, 'a, '_> {
-    /// How an external function is carried out, if it is known.
+    /// The implementation in Rust of an external function. `None` if its C name is not known.
     pub(in crate::instance) fn external_builtin_of(&self, callee: &Callee<'a>) -> Option<BuiltinImplementation> {
         bramah_external::builtin(&self.c_call(callee)?.name)
     }
 
+    /// The C call of an external function. `None` if it has no call that can be parsed.
     pub(super) fn c_call(&self, callee: &Callee<'a>) -> Option<CCall> {
         CCall::parse(external_text(callee)?)
     }
 
+    /// Calls an external function that is implemented in Rust. `None` after a message.
+    /// `place` tells messages where the call stands and where a file name was given.
     pub(in crate::instance) fn call_external(
         &mut self,
         how: BuiltinImplementation,
@@ -147,6 +165,15 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         })
     }
 
+    /// Computes an external function, or leaves its call in the flat model. The inputs are bound already.
+    ///
+    /// `None` after a message. What happens depends on the kind of implementation:
+    /// - an FMU, or an external object such as a table, is created while the model is built;
+    /// - values need known arguments;
+    /// - a function of numbers stays a call, unless all arguments are known.
+    ///
+    /// `how` is the implementation, `place` the call and the file name for messages.
+    /// Arguments that are not known before the run are passed on as such to implementations that accept it.
     fn carry_out_external(
         &mut self,
         how: BuiltinImplementation,
@@ -155,6 +182,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
     ) -> Option<ModelicaValue> {
         let call = self.c_call(callee)?;
         self.prepare_locals(callee)?;
+        // Evaluated before the implementation is asked: it decides by which arguments are known.
         let values: Vec<Option<ModelicaValue>> = call.arguments.iter().map(|a| self.input_of_c(a)).collect();
         let given: Vec<ExternalValue> = values.iter().map(|v| self.given(v.as_ref())).collect();
         match how {
@@ -186,6 +214,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
                     let message = format!("these arguments do not fit `{}`", callee.name);
                     return self.instance.fail(Code::BadCall, &message, place.call);
                 };
+                // Functions of one table differ by the table, so its address is part of the key.
                 let object = given.iter().find_map(|g| match g {
                     ExternalValue::Object(object) => Some(object.address()),
                     _ => None,
@@ -198,7 +227,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         }
     }
 
-    /// The value of an argument that is an input of the function or written out.
+    /// The value of an argument that is a local of the function or a literal. `None` for all others.
     pub(super) fn input_of_c(&mut self, argument: &ExternalArgument) -> Option<ModelicaValue> {
         match argument {
             ExternalArgument::Name(name) => self.instance.local(*name).map(|i| self.instance.eval.locals[i].1.clone()),
@@ -208,7 +237,8 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         }
     }
 
-    /// The values with which outputs and protected variables go into the call, where they are declared with one.
+    /// Makes locals of the outputs and protected variables that are declared with a value.
+    /// C code may read them as arguments. `None` after a message.
     pub(super) fn prepare_locals(&mut self, callee: &Callee<'a>) -> Option<()> {
         let formals = self.instance.calls().formals(callee, |c, p| {
             !crate::instance::calls::binding::is_input(c, p)
@@ -221,6 +251,8 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         Some(())
     }
 
+    /// An argument in the form in which [`bramah_external`] takes it. Numbers that are not known are `None` in it.
+    /// A missing argument, such as an output, is an empty list of numbers.
     fn given(&self, value: Option<&ModelicaValue>) -> ExternalValue {
         match value {
             Some(text @ ModelicaValue::Text(_)) => match text.as_text(&self.instance.exprs) {
@@ -238,11 +270,14 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         }
     }
 
-    /// A table from its file, where one is named.
+    /// Replaces the matrix among the arguments of a table by that of the file, if a file and a table are named.
+    /// `None` after a message, if it cannot be read.
+    /// The first argument is the file, the second the table, the third the matrix given in the model.
     fn table_given(&mut self, mut given: Vec<ExternalValue>, place: FileReference) -> Option<Vec<ExternalValue>> {
         let (Some(ExternalValue::Text(file)), Some(ExternalValue::Text(name))) = (given.first(), given.get(1)) else {
             return Some(given);
         };
+        // `NO_NAME` in the place of the file means that the matrix is given in the model.
         if file == NO_NAME {
             return Some(given);
         }
@@ -253,7 +288,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         Some(given)
     }
 
-    /// The outputs of a call in the order of the C call: the result, then those among the arguments.
+    /// The outputs in the order of the C call: the result first, then the outputs among the arguments.
     fn c_outputs(&mut self, call: &CCall, callee: &Callee<'a>) -> Vec<Symbol> {
         let formals = self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(CausalityPrefix::Output));
         let outputs =
@@ -261,6 +296,9 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         call.result.into_iter().chain(outputs).collect()
     }
 
+    /// The outputs of a function from values that Rust has computed, in the order of their declaration.
+    /// `None` if one is missing or not a number.
+    /// Values that are Strings or external objects are taken as they are. Numbers get the declared type.
     fn external_values(
         &mut self,
         found: Vec<ExternalValue>,
@@ -268,6 +306,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         callee: &Callee<'a>,
     ) -> Option<ModelicaValue> {
         let names = self.c_outputs(call, callee);
+        // The implementation returns values in the order of the C call, Modelica wants that of the declaration.
         let mut outputs = Vec::new();
         for f in self.instance.calls().formals(callee, |c, _| c.prefix.causality == Some(CausalityPrefix::Output)) {
             let at = names.iter().position(|n| *n == f.name)?;
@@ -285,7 +324,14 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         FunctionCalls::outputs(outputs)
     }
 
-    /// A call that stays one, or its numbers where all arguments are known.
+    /// The outputs of an external function of numbers: computed if all arguments are known, otherwise as calls.
+    ///
+    /// `key` identifies the function, so that equal ones are stored once. `scalars` are the arguments without shape.
+    /// `None` after a message.
+    ///
+    /// Outputs are counted scalar by scalar in the order of the C call.
+    /// For known arguments each of them is computed now. Otherwise each is a call with its number.
+    /// The shapes of the outputs come from their declarations.
     pub(super) fn external_function(
         &mut self,
         function: Arc<dyn ExternalFunction>,
@@ -302,6 +348,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
             blanks.push((*name, self.instance.calls().declared_local(f)?));
         }
         let count: usize = blanks.iter().map(|(_, v)| v.elements().len()).sum();
+        // A single unknown scalar makes the call part of the run.
         let known: Option<Vec<f64>> = scalars.iter().map(|e| self.instance.exprs.as_num(*e)).collect();
         let results: Vec<ExprId> = match known {
             Some(args) => (0..count).map(|k| self.instance.exprs.num(function.value(k, &args))).collect(),
@@ -316,6 +363,7 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         for (name, blank) in blanks {
             filled.push((name, blank.map(&mut |e, _| results.next().unwrap_or(e))));
         }
+        // Back from the order of the C call to that of the declaration.
         let output = |f: &crate::instance::call::FormalParameter<'a>| {
             filled.iter().find(|(n, _)| *n == f.name).map(|(_, v)| v.clone())
         };
@@ -323,6 +371,10 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         FunctionCalls::outputs(outputs?)
     }
 
+    /// The function of the pool that calls an external function; it is added if `key` is new.
+    ///
+    /// Its procedure has one slot for each input and each output, and one statement for each output.
+    /// `name` is that of the Modelica function, for messages during the run.
     fn external_id(
         &mut self,
         function: Arc<dyn ExternalFunction>,
@@ -352,7 +404,9 @@ impl<'a> ExternalCalls<'_, 'a, '_> {
         id
     }
 
-    /// The constructor of an external object, called by the name of its class (MLS 12.9.7).
+    /// Calls the constructor of an external object by the name of its class (MLS 12.9.7).
+    /// `None` after a message, if there is no constructor or its C function is not known.
+    /// `given` are the evaluated arguments, `class` is the class that extends `ExternalObject`.
     pub(in crate::instance) fn construct_object(
         &mut self,
         class: &crate::instance::ClassRef<'a>,

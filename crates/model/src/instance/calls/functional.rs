@@ -1,4 +1,7 @@
 //! Functions as arguments of functions (MLS 12.4.2).
+//!
+//! A function value is a number in a table of the instance, with the inputs that partial application has bound.
+//! A procedure is translated for a certain function, so the number is part of its key.
 
 use crate::instance::call::FormalParameter;
 use crate::instance::lookup::LookupResult;
@@ -9,7 +12,8 @@ use bramah_syntax::diag::Code;
 use std::rc::Rc;
 
 impl<'a> FunctionCalls<'_, 'a, '_> {
-    /// A function as a value; `None` for other classes.
+    /// A function as a value, with the inputs `bound` already given. `None`, without a message, for other classes.
+    /// The class is remembered in the table of the instance, at the index that the value carries.
     pub(in crate::instance) fn function_value(
         &mut self,
         class: &ClassRef<'a>,
@@ -19,6 +23,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         if !matches!(template.kind, ClassKind::Function { .. }) {
             return None;
         }
+        // The same function must get the same number, because numbers decide whether two function values are equal.
         let same = |c: &ClassRef<'a>| {
             (c.class, c.parent) == (class.class, class.parent)
                 && (Rc::ptr_eq(&c.args, &class.args) || c.args.is_empty() && class.args.is_empty())
@@ -30,7 +35,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(ModelicaValue::Function(u32::try_from(at).expect("few functions"), Rc::new(bound)))
     }
 
-    /// `function f(a = 1)`: a function some of whose inputs are given.
+    /// `function f(a = 1)`: a function with some of its inputs given (MLS 12.4.2.1). `None` after a message.
+    /// Only named arguments can be bound. They are evaluated here, at the place of the partial application.
     pub(in crate::instance) fn partial_application(
         &mut self,
         function: &'a Path,
@@ -41,6 +47,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         for (name, e) in named {
             bound.push((*name, self.instance.evaluator().eval(e, view)?));
         }
+        // `f` may itself be an input that is a function; the new bindings are added to those it has.
         if let [name] = function.parts.as_slice()
             && let Some(i) = self.instance.local(name.name)
             && let ModelicaValue::Function(f, before) = self.instance.eval.locals[i].1.clone()
@@ -56,7 +63,8 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         made.or_else(|| self.instance.fail(Code::UnknownFunction, "this is not a function", function.span))
     }
 
-    /// The function that an input of the function being carried out stands for.
+    /// The function that an input of the function being evaluated stands for, with its bound inputs.
+    /// `None`, without a message, if the name is no such input.
     pub(in crate::instance) fn functional_input(
         &self,
         function: &ComponentReference,
@@ -70,7 +78,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
-    /// Whether an input takes a function.
+    /// Whether an input is declared with a function type, so that it takes a function as its argument.
     pub(in crate::instance) fn is_functional(&mut self, f: &FormalParameter<'a>) -> bool {
         match self.instance.names().lookup_path(f.view, &f.component.class) {
             Ok(LookupResult::Class(c)) => {

@@ -1,4 +1,7 @@
-//! Outputs and protected variables of functions as they begin: with their declared values, or zeros in their shape.
+//! Initial values of the outputs and protected variables of a function.
+//!
+//! A variable starts with its declared value, or else with zeros in its declared shape.
+//! The functions here are called after the inputs are bound, because sizes and values may read them.
 
 use crate::instance::FunctionCalls;
 use crate::instance::call::{Callee, FormalParameter};
@@ -13,7 +16,14 @@ use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
 impl<'a> FunctionCalls<'_, 'a, '_> {
-    /// The initial value of an output or protected component of a function; zero where nothing is said.
+    /// The initial value of an output or protected variable of a function. `None` after a message.
+    ///
+    /// Without a declared value it is zero, in the declared shape. The size of a declared value must fit.
+    ///
+    /// ```text
+    /// protected Real w[size(u, 1)] = 2 * u;   // starts with 2 * u
+    /// output Real y[2];                       // starts with {0, 0}
+    /// ```
     pub(in crate::instance) fn declared_local(&mut self, f: &FormalParameter<'a>) -> Option<ModelicaValue> {
         let reached = self.instance.names().reached(f.view.scope, f.index);
         let value = match reached.binding {
@@ -40,14 +50,21 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
-    /// Zeros in the declared shape.
+    /// A value of zeros in the declared shape. `None` after a message.
+    ///
+    /// `value` is the declared value, if there is one: the dimension `:` takes its size from it.
+    /// For a record the fields have their declared values.
+    ///
+    /// Sizes are evaluated in the frame of the call, so they may depend on inputs: `Real w[size(u, 1)]`.
+    /// More than a million elements are reported.
+    /// The size of each dimension is at least 0.
     pub(in crate::instance) fn blank(
         &mut self,
         f: &FormalParameter<'a>,
         value: Option<&ModelicaValue>,
     ) -> Option<ModelicaValue> {
         let mut found = self.instance.names().class_at(f.view, &f.component.class)?;
-        // `output R r(x = u)`: fields take what the declaration says of them
+        // Modifiers in the declaration, as in `output R r(x = u)`, give fields their values.
         let given = self.instance.names().reached(f.view.scope, f.index).args;
         if let LookupResult::Class(c) = &mut found
             && !given.is_empty()
@@ -58,7 +75,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         let mut dims = Vec::new();
         for (i, s) in f.component.subscripts.iter().enumerate() {
             dims.push(match s {
-                // without a value of its own it takes the size of what is assigned to it (MLS 12.4.5)
+                // Without a value it starts empty, and takes the size of what is assigned to it (MLS 12.4.5).
                 ast::Subscript::All(_) => value.and_then(|v| v.dims().get(i).copied()).unwrap_or(0),
                 ast::Subscript::Expr(e) => match self.instance.evaluator().enumeration_range(e, f.view) {
                     Some(all) => all.len(),
@@ -66,6 +83,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
                 },
             });
         }
+        // A wrong size would otherwise use up the memory before anything else notices.
         if dims.iter().product::<usize>() > 1_000_000 {
             return self.instance.fail(
                 Code::TooLarge,
@@ -76,13 +94,18 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(repeated(&one, dims))
     }
 
+    /// The zero value of one element of a type: 0, `false`, the first literal, an empty String, or a record.
+    ///
+    /// `None` after a message, if `found` is a component. `span` is the place of the declaration.
+    /// Dimensions that the type itself has are included.
+    /// A record consists of the initial values of its components, protected ones included.
     pub(in crate::instance) fn blank_one(&mut self, found: &LookupResult<'a>, span: Span) -> Option<ModelicaValue> {
         let of = |b: BuiltinType| match b {
             BuiltinType::Real => ModelicaValue::Scalar(Exprs::ZERO, ScalarType::Real),
             BuiltinType::Integer => ModelicaValue::Scalar(Exprs::ZERO, ScalarType::Integer),
             BuiltinType::Boolean => ModelicaValue::Scalar(Exprs::ZERO, ScalarType::Boolean),
             BuiltinType::Enumeration(i) => ModelicaValue::Scalar(Exprs::ONE, ScalarType::Enumeration(i)),
-            // an output of this type is made by what Rust knows of the function
+            // The function that the C name stands for creates the object later, so any value does here.
             BuiltinType::String | BuiltinType::Object => ModelicaValue::text(""),
         };
         match found {
@@ -108,10 +131,12 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         }
     }
 
-    /// The dimensions that a type brings, as `type Orientation = Real[3, 3]` does.
+    /// The dimensions of a type such as `type Orientation = Real[3, 3]`, in the order in which the value has them.
+    /// `None` after a message: they must be given as numbers, not as `:`.
+    /// They are evaluated around the class that declares them.
     pub(in crate::instance) fn type_dims(&mut self, t: &Template<'a>) -> Option<Vec<usize>> {
         let mut dims = Vec::new();
-        for (subscripts, base) in t.dims.iter().rev() {
+        for (subscripts, base) in &t.dims {
             let view = t.bases[*base as usize].parent;
             for s in *subscripts {
                 dims.push(match s {
@@ -126,7 +151,10 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
     }
 }
 
-/// Locals so that each comes after those that its sizes and its value name (MLS 12.4.4).
+/// Sorts locals so that each comes after those that its dimensions and its value read (MLS 12.4.4).
+///
+/// Locals that need each other keep the order of their declaration.
+/// Evaluating them then reads initial values, which is not reported here.
 pub(in crate::instance) fn in_order_of_use<'f, 'a>(locals: &'f [FormalParameter<'a>]) -> Vec<&'f FormalParameter<'a>> {
     let named: Vec<Vec<Symbol>> =
         locals.iter().map(|f| crate::instance::deduce::names_of_declaration(f.component)).collect();
@@ -134,14 +162,15 @@ pub(in crate::instance) fn in_order_of_use<'f, 'a>(locals: &'f [FormalParameter<
     let mut open: Vec<usize> = (0..locals.len()).collect();
     while !open.is_empty() {
         let waits = |k: usize, on: usize| on != k && named[k].contains(&locals[on].name);
-        // those that use each other stay as they are declared
+        // In a cycle no local is free to go first; the first one in the order of declaration is taken.
         let at = open.iter().position(|&k| !open.iter().any(|&on| waits(k, on))).unwrap_or(0);
         sorted.push(&locals[open.remove(at)]);
     }
     sorted
 }
 
-/// An array of these dimensions, all elements of which are one value.
+/// An array with the dimensions `dims`, in which each element is the value `one`.
+/// The dimensions of `one` come after `dims`. Without dimensions the result is `one` itself.
 pub(in crate::instance) fn repeated(one: &ModelicaValue, dims: Vec<usize>) -> ModelicaValue {
     if dims.is_empty() {
         return one.clone();

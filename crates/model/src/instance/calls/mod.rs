@@ -1,4 +1,10 @@
-//! Calls: built-in functions, user functions written out or translated into procedures, what Rust knows of C functions.
+//! Calls of functions.
+//!
+//! - `call` is the entry: it finds the function and decides how to call it; `binding` and `locals` prepare the call.
+//! - `builtin` has the built-in functions, `vectorised` applies functions element by element.
+//! - `procedure` translates functions that cannot be evaluated to expressions; `functional` passes functions as
+//!   arguments.
+//! - `external`, `files` and `c` call external functions.
 
 pub(in crate::instance) mod binding;
 pub(in crate::instance) mod builtin;

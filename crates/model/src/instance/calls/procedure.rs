@@ -1,8 +1,9 @@
-//! Functions that cannot be written as one expression (loops and indices that depend on values): translated into
-//! [`Function`]s over numbered slots.
+//! Procedures: functions whose loops, conditions or indices depend on values of the run.
 //!
-//! Expressions inside are built in the same pool, with locals standing as variables numbered from [`LOCAL`] on, and
-//! then turned into terms.
+//! Such a function is translated into a [`Function`], a small program over numbered slots.
+//! The expression pool then holds calls of it, one for each scalar output.
+//! While the body is translated, locals are variables numbered from [`LOCAL`] on, in the same pool as all expressions.
+//! `term` turns such expressions into terms over slots. Loops of algorithm sections are translated in the same way.
 
 use crate::instance::FunctionCalls;
 use crate::instance::algorithm::assigned;
@@ -21,22 +22,32 @@ use bramah_syntax::ast::{self, CausalityPrefix, ComponentReference, Expr, ExprKi
 use bramah_syntax::diag::{Code, Span};
 use bramah_syntax::symbol::Symbol;
 
-/// First number of the variables that stand for slots.
+/// The number of the variable that stands for slot 0. It is above all numbers of flat variables.
 const LOCAL: u32 = 0x4000_0000;
-/// The pseudo function that stands for an array element with an index known at run time only.
+/// A function id that no function has.
+/// A call of it stands for an array element whose index is known only during the run: output number is the first slot.
 const ELEMENT: FunctionId = FunctionId(u32::MAX);
 
-/// The state of a translation.
+/// The procedure that is being translated.
 #[derive(Default)]
 pub struct ProcedureDraft {
+    /// The number of slots so far.
     slots: u32,
+    /// The list of statements to which the translation appends.
     statements: Vec<SlotStatement>,
-    /// What a loop of a model reads of the model, in its first slots; `None` in functions, which read their inputs only.
+    /// The expressions of the model that a loop reads, in the order of the first slots.
+    /// `None` in functions, which read their inputs only.
     captures: Option<Vec<ExprId>>,
 }
 
 impl<'a> ProcedureTranslator<'_, 'a, '_> {
-    /// Calls a function through its procedure.
+    /// Calls a function through its procedure, which is translated at the first call. `None` after a message.
+    ///
+    /// The value consists of one call for each scalar output. Equal calls are one node of the pool.
+    ///
+    /// 1. The arguments are bound to the inputs in a frame, which also evaluates defaults.
+    /// 2. The procedure is found by its key, or translated.
+    /// 3. The scalars of all arguments that are not built in are handed over.
     pub(in crate::instance) fn call_procedure(
         &mut self,
         callee: &Callee<'a>,
@@ -45,6 +56,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         span: Span,
     ) -> Option<ModelicaValue> {
         let values = self.instance.calls().with_inputs(callee, positional, named, span, |s| {
+            // Binding fills in the defaults, so that the procedure gets a value for each input.
             Some(s.eval.locals[s.eval.frame..].iter().map(|(_, v)| v.clone()).collect::<Vec<ModelicaValue>>())
         })?;
         let key = self.procedure_key(callee, &values);
@@ -53,7 +65,9 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
             Some(found) => found,
             None => self.translate(callee, &values, key, span)?,
         };
+        // The order is that of the inputs, scalar by scalar, as the slots of the inputs are numbered.
         let mut args: Vec<ExprId> = Vec::new();
+        // Arguments that are built into the procedure are not handed over.
         for v in values.iter().filter(|v| !self.specialised(v)) {
             v.scalars(&mut args);
         }
@@ -70,7 +84,8 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         FunctionCalls::outputs(outputs)
     }
 
-    /// Whole numbers and truth values that are known are built in: sizes and loop bounds depend on them.
+    /// Whether an argument is built into the procedure: a known Integer, Boolean or enumeration value, or a String.
+    /// Sizes and loop bounds may depend on those, and Strings have no slots.
     fn specialised(&self, v: &ModelicaValue) -> bool {
         match v {
             ModelicaValue::Scalar(e, ScalarType::Integer | ScalarType::Boolean | ScalarType::Enumeration(_)) => {
@@ -81,6 +96,9 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         }
     }
 
+    /// The key of a procedure: the function with its scope, the values that are built in, and the shapes of the others.
+    /// Calls with equal keys use the same procedure.
+    /// Functions as arguments are part of the key, because a procedure calls a certain function.
     fn procedure_key(&self, callee: &Callee<'a>, values: &[ModelicaValue]) -> String {
         let mut key = format!("{}@{}", callee.name, callee.scope.0);
         for v in values {
@@ -98,6 +116,10 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         key
     }
 
+    /// Translates a function for arguments of these shapes. `None` after a message.
+    ///
+    /// `values` are the arguments in the order of the inputs. The result is the procedure with the shapes of its
+    /// outputs.
     fn translate(
         &mut self,
         callee: &Callee<'a>,
@@ -112,6 +134,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
             self.instance.in_mode(change, |s| s.in_frame(|s| s.procedures().translate_body(callee, values, key)));
         let refused = std::mem::replace(&mut self.instance.eval.not_inline, not_inline);
         self.instance.eval.translation = outer;
+        // In a procedure nothing can be postponed any more: what must be known there and is not is an error.
         if result.is_none() && refused {
             let message = format!("`{}` has sizes or ranges that are only known at run time", callee.name);
             return self.instance.fail(Code::NotConstant, &message, span);
@@ -119,6 +142,11 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         result
     }
 
+    /// Translates the body of a function, in a frame of its own. `None` after a message, or with `not_inline` set.
+    ///
+    /// Slots are given out in the order: inputs, outputs and protected variables, temporaries.
+    /// Output shapes are known before the statements are translated, so recursive calls can use them.
+    /// The result of a translation that fails is removed from the table.
     fn translate_body(
         &mut self,
         callee: &Callee<'a>,
@@ -130,6 +158,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
             let local = if self.specialised(v) { v.clone() } else { self.slots_like(v) };
             self.instance.eval.locals.push((f.name, local));
         }
+        // The inputs have the first slots; only those that are handed over have any.
         let count = self.instance.eval.translation.slots;
         let locals = self.locals_in_slots(callee)?;
         let shapes: Vec<ModelicaValue> = locals
@@ -140,13 +169,14 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         let mut outputs = Vec::new();
         shapes.iter().for_each(|s| s.scalars(&mut outputs));
         let outputs: Vec<u32> = outputs.iter().filter_map(|&e| self.slot(e)).collect();
-        // Entered before the body is translated, so that a recursive call finds it.
+        // Entered before the body is translated, so that a recursive call finds it. The body is filled in at the end.
         let blank =
             Function { name: callee.name.clone(), inputs: count, slots: 0, outputs: outputs.clone(), body: Vec::new() };
         let id = self.instance.exprs.add_function(blank);
         self.instance.functions.procedures.insert(key.clone(), (id, shapes.clone()));
         for (section, view) in sections(callee) {
             if self.procedure_statements(section, view).is_none() {
+                // A failed translation must not be found by the next call.
                 self.instance.functions.procedures.remove(&key);
                 return None;
             }
@@ -158,7 +188,8 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some((id, shapes))
     }
 
-    /// Outputs and protected variables in slots, with the values that they begin with.
+    /// Gives outputs and protected variables slots with their initial values, and makes them locals.
+    /// `None` after a message. The result lists them in the order of their declaration.
     fn locals_in_slots(&mut self, callee: &Callee<'a>) -> Option<Vec<FormalParameter<'a>>> {
         let locals = self.instance.calls().formals(callee, |c, p| !is_input(c, p));
         for f in in_order_of_use(&locals) {
@@ -170,15 +201,22 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some(locals)
     }
 
-    /// Carries out a loop of a model's algorithm section as a procedure of what it reads, for it runs as often as
-    /// changing values say. Its relations make no events (MLS 11.2.3).
+    /// Translates a loop of a model's algorithm section into a procedure of what the loop reads. `None` after a
+    /// message.
+    ///
+    /// It is used if the number of repetitions depends on values of the run. The assigned locals become calls of the
+    /// procedure. Relations inside raise no events (MLS 11.2.3).
+    ///
+    /// `view` is the place of the section. The locals have their values before the loop again while it is translated.
+    /// The procedure is named after the class of the model, for messages during the run.
+    /// A `when` inside the loop is an error.
     pub(in crate::instance) fn loop_as_procedure(&mut self, s: &'a Statement, view: LookupContext) -> Option<()> {
         let changed = self.assigned_locals(s)?;
         let before = self.instance.eval.locals.clone();
         let outer = std::mem::take(&mut self.instance.eval.translation);
         let mut captures = Vec::new();
         let mut made = None;
-        // Once to see what it reads, once with slots for that.
+        // The first pass finds what the loop reads. The second one numbers its slots after those of the captures.
         for _ in 0..2 {
             self.instance.eval.locals.clone_from(&before);
             let slots = u32::try_from(captures.len()).expect("limited sizes");
@@ -211,7 +249,9 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some(())
     }
 
-    /// The variables of the section that a statement assigns.
+    /// The indices of the locals that a statement assigns, in increasing order.
+    /// `None` after a message, if there is a `when` in the loop.
+    /// Locals outside of the loop that it does not assign are only read.
     fn assigned_locals(&mut self, s: &'a Statement) -> Option<Vec<usize>> {
         let (mut targets, mut in_when) = (Vec::new(), Vec::new());
         assigned(std::slice::from_ref(s), false, &mut targets, &mut in_when);
@@ -226,13 +266,16 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some(changed)
     }
 
-    /// The slots in which the changed variables end.
+    /// Translates a loop. The result is, for each changed local, the slots that hold its value at the end.
+    /// `None` after a message.
+    /// `changed` are the locals that the loop assigns.
     fn translate_loop(
         &mut self,
         s: &'a Statement,
         changed: &[usize],
         view: LookupContext,
     ) -> Option<Vec<ModelicaValue>> {
+        // Each changed variable starts with its value before the loop.
         for &i in changed {
             let value = self.instance.eval.locals[i].1.clone();
             let slots = self.slots_like(&value);
@@ -243,8 +286,10 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some(changed.iter().map(|&i| self.instance.eval.locals[i].1.clone()).collect())
     }
 
-    /// Fresh slots in the shape of a value.
+    /// New slots in the shape of a value, as variables of the pool.
+    /// They are consecutive and in row-major order, which indexed access relies on.
     fn slots_like(&mut self, v: &ModelicaValue) -> ModelicaValue {
+        // The pool is taken out while the closure changes it and the number of slots together.
         let mut pool = std::mem::take(&mut self.instance.exprs);
         let slots = &mut self.instance.eval.translation.slots;
         let made = v.map(&mut |_, _| {
@@ -255,6 +300,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         made
     }
 
+    /// The slot for which a variable of the pool stands. `None` for any other expression.
     fn slot(&self, e: ExprId) -> Option<u32> {
         match self.instance.exprs.node(e) {
             ExprNode::Var(v) if v.0 >= LOCAL => Some(v.0 - LOCAL),
@@ -262,11 +308,15 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         }
     }
 
+    /// Appends a statement to the list that is being filled.
     fn emit(&mut self, s: SlotStatement) {
         self.instance.eval.translation.statements.push(s);
     }
 
-    /// Stores a value into slots; several at once go through temporaries, as all are read before any is written.
+    /// Emits the assignment of a value to slots of the same shape.
+    ///
+    /// Several scalars go through temporary slots: all are read before one is written, as in `(a, b) := (b, a)`.
+    /// Both values must have the same shape, which the caller has checked.
     fn store(&mut self, slots: &ModelicaValue, value: &ModelicaValue) {
         let (mut to, mut from) = (Vec::new(), Vec::new());
         slots.scalars(&mut to);
@@ -287,7 +337,14 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         }
     }
 
-    /// Translates statements into a list of their own.
+    /// A value as it is now, in slots of its own that nothing else writes.
+    fn kept(&mut self, value: &ModelicaValue) -> ModelicaValue {
+        let slots = self.slots_like(value);
+        self.store(&slots, value);
+        slots
+    }
+
+    /// Runs `f` and returns the statements that it emitted as a list of their own, for a branch or the body of a loop.
     fn nested(&mut self, f: impl FnOnce(&mut Self) -> Option<()>) -> Option<Vec<SlotStatement>> {
         let outer = std::mem::take(&mut self.instance.eval.translation.statements);
         let done = f(self);
@@ -295,10 +352,19 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         done.map(|()| inner)
     }
 
+    /// Translates statements in order. `None` after a message, or with `not_inline` set.
     fn procedure_statements(&mut self, statements: &'a [Statement], view: LookupContext) -> Option<()> {
         statements.iter().try_for_each(|s| self.procedure_statement(s, view))
     }
 
+    /// Translates one statement. `None` as above.
+    /// Unlike in `Statements`, conditions and indices need not be known.
+    ///
+    /// - Assignments store values in slots. A call with several outputs stores each of them.
+    /// - `if`, `for` and `while` become statements of the procedure, with translated bodies.
+    /// - `break` and `return` are statements too. `when` is an error.
+    ///
+    /// A condition is evaluated to a term, which the procedure computes at each test.
     fn procedure_statement(&mut self, s: &'a Statement, view: LookupContext) -> Option<()> {
         match &s.kind {
             StatementKind::Assign(target, value) => {
@@ -310,17 +376,21 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 let ModelicaValue::Tuple(values) = &value else {
                     return self.instance.fail(Code::BadCall, "this function has one result only", s.span);
                 };
-                for (target, v) in targets.iter().zip(values.iter()) {
-                    if let Some(t) = target {
-                        self.procedure_assign(t, v, view, s.span)?;
-                    }
-                }
-                Some(())
+                let wanted: Vec<_> =
+                    targets.iter().zip(values.iter()).filter_map(|(t, v)| Some((t.as_ref()?, v))).collect();
+                // All outputs are computed before one is assigned: `(a, b) := f(b, a)` reads both as they were.
+                let kept: Vec<ModelicaValue> = if wanted.len() > 1 {
+                    wanted.iter().map(|(_, v)| self.kept(v)).collect()
+                } else {
+                    wanted.iter().map(|(_, v)| (*v).clone()).collect()
+                };
+                wanted.iter().zip(&kept).try_for_each(|((t, _), v)| self.procedure_assign(t, v, view, s.span))
             }
             StatementKind::Call(call) => self.procedure_call_statement(call, view),
             StatementKind::If { branches, otherwise } => self.procedure_if(branches, otherwise, view),
             StatementKind::For { iterators, body } => self.procedure_for(iterators, body, view),
             StatementKind::While(condition, body) => {
+                // Evaluated once: the term reads the slots again at each repetition.
                 let c = self.instance.evaluator().eval(condition, view)?;
                 let test = self.boolean_term(&c, condition.span)?;
                 let body = self.nested(|s| s.procedure_statements(body, view))?;
@@ -341,6 +411,9 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         }
     }
 
+    /// Translates a call as a statement: an `assert`, or a function without outputs. `None` as above.
+    /// An assertion in the procedure stops the run with its message when it fails.
+    /// The level of the assertion is not looked at.
     fn procedure_call_statement(&mut self, call: &'a Expr, view: LookupContext) -> Option<()> {
         if let ExprKind::Call { function, args, .. } = &call.kind
             && function.parts[0].name.name == "assert"
@@ -350,6 +423,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
             let text = args
                 .get(1)
                 .and_then(|m| self.instance.evaluator().eval(m, view))
+                // The message is fixed when the model is built: symbolic values in it appear as dots.
                 .map(|v| v.in_words(&self.instance.exprs));
             self.emit(SlotStatement::Assert(test, text.unwrap_or_default()));
             return Some(());
@@ -357,7 +431,10 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         self.instance.evaluator().eval_all(call, view).map(|_| ())
     }
 
-    /// The statements of a function without outputs as part of the procedure being translated.
+    /// Inserts the statements of a function without outputs into the procedure being translated. `None` after a
+    /// message.
+    ///
+    /// A `return` in it would end the procedure around, so that is refused.
     pub(in crate::instance) fn procedure_body(
         &mut self,
         callee: &Callee<'a>,
@@ -377,6 +454,8 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         })
     }
 
+    /// A Boolean value as a term. `None` after a message, if it is no Boolean.
+    /// `span` is the place of the condition for the message.
     fn boolean_term(&mut self, v: &ModelicaValue, span: Span) -> Option<SlotExpr> {
         match v.scalar() {
             Some((e, ScalarType::Boolean)) => Some(self.term(e)),
@@ -384,6 +463,11 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         }
     }
 
+    /// Translates `target := value`, where the target may have subscripts and fields. `None` as above.
+    ///
+    /// The target is followed part by part to the slots that it names. Sizes must agree.
+    /// A symbolic subscript at the end is stored through an offset.
+    /// Each field of a record has its own slots, which are found by its name.
     fn procedure_assign(
         &mut self,
         target: &'a Expr,
@@ -396,6 +480,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         let value = value.first_output();
         let mut place = self.instance.eval.locals[i].1.clone();
         let whole = r.parts.len() == 1 && r.parts[0].subscripts.is_empty() && place.dims() != value.dims();
+        // A protected `Real x[:]` has no slots until it gets its first value.
         if whole && place.elements().is_empty() && self.takes_any_size(view, name.name) {
             place = self.slots_like(&value);
             self.instance.eval.locals[i].1 = place.clone();
@@ -405,6 +490,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 place = self.instance.evaluator().field(&place, part.name.name, part.name.span)?;
             }
             if !part.subscripts.is_empty() {
+                // A symbolic subscript ends the walk: it is stored through an offset, not by naming slots.
                 if let Some(done) = self.store_element(&place, part, r, k, &value, view, span)? {
                     return Some(done);
                 }
@@ -419,13 +505,20 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some(())
     }
 
-    /// Whether a protected variable of a function takes the size of what is assigned to it; outputs are sized before.
+    /// Whether a protected variable takes the size of what is assigned to it, as `Real x[:]` does.
+    /// Outputs do not: their size must be known to the caller before.
     fn takes_any_size(&mut self, view: LookupContext, name: Symbol) -> bool {
         self.instance.statements().is_flexible(view, name)
             && self.instance.statements().declaration(view, name).is_some_and(|c| c.prefix.causality.is_none())
     }
 
-    /// `a[i] := value` with an index known at run time only.
+    /// Translates `a[i] := value` with an index that is known only during the run.
+    ///
+    /// `Some(None)` if all subscripts are known or some are missing: then it is no such assignment.
+    /// `None` after a message. `k` is the index of `part` in the reference.
+    ///
+    /// Only a scalar element of an array of scalars can be stored this way, with no field after the subscripts.
+    /// Every other form with a symbolic subscript is reported as unsupported.
     #[allow(clippy::too_many_arguments, reason = "the pieces of one assignment")]
     fn store_element(
         &mut self,
@@ -449,6 +542,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         if !picks.iter().any(|p| matches!(p, SubscriptValue::Symbolic(_))) {
             return Some(None);
         }
+        // The elements of a local lie in consecutive slots, so the first slot and an offset suffice.
         let base = elements.first().and_then(|v| v.scalar()).and_then(|(e, _)| self.slot(e));
         let (Some(base), Some((e, _)), true) = (base, value.scalar(), k + 1 == r.parts.len()) else {
             return self.instance.fail(Code::Unsupported, "this assignment needs an index known before the run", span);
@@ -460,7 +554,9 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some(Some(()))
     }
 
-    /// The row-major offset of an element, from 0.
+    /// The row-major offset of an element as an expression, counted from 0.
+    /// There is one entry of `picks` for each dimension, and none of them selects several positions.
+    /// `a[i, j]` of size `[2, 3]` has the offset `(i - 1) * 3 + (j - 1)`.
     fn offset(&mut self, dims: &[usize], picks: &[SubscriptValue]) -> ExprId {
         let mut offset = Exprs::ZERO;
         for (p, &d) in picks.iter().zip(dims) {
@@ -476,7 +572,13 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         offset
     }
 
-    /// An element of an array in slots at an index known at run time only; other arrays are copied into slots first.
+    /// The element of an array at an index that is known only during the run, as a call of [`ELEMENT`].
+    ///
+    /// The elements must lie in consecutive slots. An array that does not is copied into new slots first.
+    /// `None` if the array has no scalar elements or a subscript selects several: the caller goes on without slots.
+    ///
+    /// `dims` and `elements` are the array, `picks` the subscripts, one for each dimension.
+    /// A copy is made of the values at this point of the procedure, so later assignments do not change it.
     pub(in crate::instance) fn indexed_slot(
         &mut self,
         dims: &[usize],
@@ -508,6 +610,8 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some(ModelicaValue::Scalar(self.instance.exprs.call(ELEMENT, base, &[offset, len]), ty))
     }
 
+    /// Translates an `if` statement. Branches that are known to be false are left out. `None` as above.
+    /// If all conditions are known to be false, the statements of `else` are inserted without a test.
     fn procedure_if(
         &mut self,
         branches: &'a [(Expr, Vec<Statement>)],
@@ -517,6 +621,8 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         let mut tests = Vec::new();
         for (condition, body) in branches {
             let c = self.instance.evaluator().eval(condition, view)?;
+            // The branch is dropped only if the condition is false; a true one stays a test, and what follows is never
+            // taken.
             if c.as_number(&self.instance.exprs) == Some(0.0) {
                 continue;
             }
@@ -532,6 +638,10 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         Some(())
     }
 
+    /// Translates a `for` statement over several iterators, the last one innermost. `None` as above.
+    /// A range becomes a counting loop. Other vectors are copied into slots, and the loop counts their elements.
+    /// The number of repetitions need not be known: the bounds are terms that the procedure evaluates.
+    /// An enumeration type gives the numbers of its literals.
     fn procedure_for(
         &mut self,
         iterators: &'a [ast::ForIndex],
@@ -542,6 +652,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         match first.range.as_ref().map(|r| &r.kind) {
             Some(ExprKind::Range { from, step, to }) => {
                 let from = self.instance.evaluator().eval(from, view)?;
+                // The bounds are terms, so they may depend on inputs and on earlier statements.
                 let step = match step {
                     Some(s) => self.instance.evaluator().eval(s, view)?,
                     None => self.instance.evaluator().integer(1.0),
@@ -570,6 +681,11 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         }
     }
 
+    /// Emits a loop over the slot of a counter. `None` as above.
+    ///
+    /// `bounds` are the first value, the step and the last value of the counter.
+    /// With `array`, the loop variable is the element at the counter, otherwise the counter itself, with the type `ty`.
+    /// `rest` are the remaining iterators, which are translated inside.
     #[allow(clippy::too_many_arguments, reason = "the pieces of one loop")]
     fn loop_over(
         &mut self,
@@ -584,6 +700,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         let counter = self.slots_like(&ModelicaValue::Scalar(Exprs::ZERO, ScalarType::Integer));
         let (index, _) = counter.scalar()?;
         let slot = self.slot(index)?;
+        // The loop variable is a slot or an element; it is visible in the body only.
         let value = match &array {
             None => ModelicaValue::Scalar(index, ty),
             Some(a) => self.indexed_slot(a.dims(), a.elements(), &[SubscriptValue::Symbolic(index)])?,
@@ -597,10 +714,16 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     }
 
     /// An expression of the pool as a term over slots.
+    ///
+    /// Relations and roundings raise no events in a procedure, and `homotopy` is its actual expression.
+    ///
+    /// Variables from [`LOCAL`] on are slots. Calls of [`ELEMENT`] are elements at a computed offset.
+    /// Calls of other functions stay calls.
     fn term(&mut self, e: ExprId) -> SlotExpr {
         match self.instance.exprs.node(e) {
             ExprNode::Num(bits) => SlotExpr::Num(f64::from_bits(bits)),
             ExprNode::Var(v) if v.0 >= LOCAL => SlotExpr::Slot(v.0 - LOCAL),
+            // A loop of a model may read anything of the model; that is handed over instead of being translated.
             _ if self.instance.eval.translation.captures.is_some() && !self.uses_slots(e) => self.captured(e),
             ExprNode::Unary(op, a) => SlotExpr::Unary(op, self.boxed(a)),
             ExprNode::Binary(op, a, b) => SlotExpr::Binary(op, self.boxed(a), self.boxed(b)),
@@ -619,15 +742,17 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 let args = self.instance.exprs.args(args).to_vec();
                 SlotExpr::Call(f, output, args.into_iter().map(|a| self.term(a)).collect())
             }
-            // Nothing else can be named in a function; not a number makes a mistake of ours visible.
+            // No other node can occur in a function. NaN makes an error of the compiler visible in the results.
             _ => SlotExpr::Num(f64::NAN),
         }
     }
 
+    /// A boxed term, as operators need their operands.
     fn boxed(&mut self, e: ExprId) -> Box<SlotExpr> {
         Box::new(self.term(e))
     }
 
+    /// Whether an expression reads slots of the procedure, directly or through array elements.
     fn uses_slots(&self, e: ExprId) -> bool {
         let slot = |e: &ExprId| match self.instance.exprs.node(*e) {
             ExprNode::Var(v) => v.0 >= LOCAL,
@@ -637,7 +762,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         self.instance.exprs.reachable(&[e], |_| true).iter().any(slot)
     }
 
-    /// An expression of the model that a loop reads, in the slot it is handed in.
+    /// The slot in which an expression of the model is handed over to a loop. It is added if it is new.
     fn captured(&mut self, e: ExprId) -> SlotExpr {
         let captures = self.instance.eval.translation.captures.get_or_insert_default();
         let at = captures.iter().position(|&c| c == e).unwrap_or_else(|| {
@@ -648,7 +773,8 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     }
 }
 
-/// Whether a statement may end its function.
+/// Whether a statement contains a `return`.
+/// `when` statements are not searched: they cannot stand in a function.
 fn returns(s: &Statement) -> bool {
     match &s.kind {
         StatementKind::Return => true,

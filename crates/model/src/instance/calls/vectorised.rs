@@ -1,4 +1,7 @@
-//! Functions of single values called with arrays: one call for each element (MLS 12.4.6).
+//! Vectorized calls: a function of scalars called with arrays (MLS 12.4.6).
+//!
+//! `sin({1, 2})` calls `sin` for each element. All arguments with additional dimensions must agree in these; the other
+//! arguments are the same in all calls.
 
 use crate::instance::FunctionCalls;
 use crate::instance::call::{Callee, FormalParameter};
@@ -9,17 +12,24 @@ use bramah_syntax::ast::Ident;
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
-/// The arguments of a call.
+/// The evaluated arguments of a call.
 #[derive(Clone)]
 pub(in crate::instance) struct CallArguments {
-    /// By place.
+    /// Positional arguments, in order.
     pub positional: Vec<ModelicaValue>,
-    /// By name.
+    /// Named arguments, in the order in which they are written.
     pub named: Vec<(Ident, ModelicaValue)>,
 }
 
 impl<'a> FunctionCalls<'_, 'a, '_> {
-    /// Calls a function, element by element where arguments have more dimensions than their inputs.
+    /// Calls a function, once for each element if arguments have more dimensions than their inputs.
+    ///
+    /// The results are arrays with the additional dimensions in front. `None` after a message.
+    ///
+    /// ```text
+    /// function f input Real x; input Real p; output Real y; ... end f;
+    /// f({1, 2}, 3)     // {f(1, 3), f(2, 3)}
+    /// ```
     pub(in crate::instance) fn call_elementwise(
         &mut self,
         callee: &Callee<'a>,
@@ -27,6 +37,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         span: Span,
     ) -> Option<ModelicaValue> {
         let mut values = given.positional.iter().chain(given.named.iter().map(|(_, v)| v));
+        // The most common case: only scalars, which need no look at the declared inputs.
         if values.all(|v| v.dims().is_empty()) {
             return self.call_function(callee, given.positional, given.named, span);
         }
@@ -35,6 +46,7 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
             return self.call_function(callee, given.positional, given.named, span);
         };
         let count: usize = dims.iter().product();
+        // Without elements there is no call, and so no shape of a result: it is taken as a scalar.
         if count == 0 {
             return Some(ModelicaValue::array(dims, Vec::new()));
         }
@@ -52,7 +64,12 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         self.gathered(dims, results, span)
     }
 
-    /// The dimensions that arguments have beyond those of their inputs; `None` where none has more.
+    /// The dimensions that arguments have beyond those of their inputs.
+    /// `Some(None)` if no argument has more. `None` after a message, if arguments disagree.
+    ///
+    /// `inputs` are the declared inputs in order. A named argument is compared with the input of its name.
+    /// The message about different sizes names both inputs.
+    /// Arguments for inputs that do not exist are reported later, when they are bound.
     fn shared_dims(
         &mut self,
         callee: &Callee<'a>,
@@ -89,7 +106,9 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(shared.map(|(_, dims)| dims))
     }
 
-    /// How many more dimensions a value has than the input it is given to.
+    /// How many more dimensions a value has than the input that takes it.
+    /// Dimensions of the declaration and of its type both count.
+    /// A dimension of the type, as in `input Orientation R`, is no reason to call the function for each element.
     fn extra_dims(&mut self, f: &FormalParameter<'a>, v: &ModelicaValue) -> usize {
         let declared = f.component.subscripts.len();
         if v.dims().len() <= declared {
@@ -104,7 +123,9 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         v.dims().len().saturating_sub(declared + of_type)
     }
 
-    /// The results of all calls as arrays, one for each output.
+    /// The results of all calls as arrays with the dimensions `dims` in front, one array for each output.
+    /// `None` after a message, if the calls gave different shapes.
+    /// A function with several outputs gives a tuple of arrays.
     fn gathered(&mut self, dims: Vec<usize>, results: Vec<ModelicaValue>, span: Span) -> Option<ModelicaValue> {
         let outputs = match &results[0] {
             ModelicaValue::Tuple(first) => first.len(),
@@ -121,17 +142,20 @@ impl<'a> FunctionCalls<'_, 'a, '_> {
         Some(ModelicaValue::Tuple(Rc::new(arrays)))
     }
 
+    /// The results of one output, stacked in row-major order, as an array with the dimensions `dims` in front.
+    /// `None` after a message, if their shapes differ.
     fn shaped(&mut self, dims: Vec<usize>, results: Vec<ModelicaValue>, span: Span) -> Option<ModelicaValue> {
         let shapes: Vec<String> = results.iter().map(ModelicaValue::describe).collect();
         let Some(ModelicaValue::Array { dims: stacked, elements }) = stack(results) else {
             let message = format!("the calls for each element differ in size: {}", shapes.join(", "));
             return self.instance.fail(Code::SizeMismatch, &message, span);
         };
+        // `stack` has put all results along one dimension; that is replaced by `dims`.
         Some(ModelicaValue::Array { dims: dims.into_iter().chain(stacked[1..].iter().copied()).collect(), elements })
     }
 }
 
-/// The part of an array with a number among those that its first dimensions count, row by row.
+/// The part of an array for call `number`: the first `outer` dimensions, in row-major order, select it.
 fn block(v: &ModelicaValue, outer: usize, number: usize) -> ModelicaValue {
     let inner = v.dims()[outer..].to_vec();
     let step: usize = inner.iter().product();

@@ -1,4 +1,9 @@
-//! Statements carried out on symbolic values: what an algorithm computes, as expressions.
+//! Statements, executed on symbolic values: the result of an algorithm is an expression for each variable.
+//!
+//! Locals hold the values so far, and an assignment replaces one. Loops are unrolled if their range is known.
+//! After an `if` with an unknown condition both results are merged: `x` becomes `if c then x1 else x2`.
+//! If that is not possible, `not_inline` is set and `None` returned. The caller then makes a procedure of the function
+//! or loop. In a model, `when` and `assert` are collected for `flat`.
 
 use crate::instance::deduce::LoopBody;
 use crate::instance::evaluation::indices::SubscriptValue;
@@ -25,12 +30,13 @@ pub enum StatementFlow {
     Break,
     /// By `return`.
     Return,
-    /// By `break` where a condition holds, else at its end.
+    /// By `break` if the condition holds, otherwise at its end.
     BreakIf(ExprId),
 }
 
 impl StatementFlow {
-    /// When a loop is left; `None` for a `return`.
+    /// The condition under which the loop around is left by `break`. `None` after a `return`, which leaves the
+    /// function.
     fn left(self) -> Option<ExprId> {
         match self {
             StatementFlow::Next => Some(Exprs::ZERO),
@@ -40,6 +46,7 @@ impl StatementFlow {
         }
     }
 
+    /// The flow for a loop that is left under a condition.
     fn leaving(condition: ExprId) -> StatementFlow {
         match condition {
             Exprs::ZERO => StatementFlow::Next,
@@ -49,56 +56,63 @@ impl StatementFlow {
     }
 }
 
-/// A `when` met in an algorithm section of a model: conditions of each branch with the values it assigns.
+/// A `when` statement of an algorithm section of a model, with the conditions and assigned values of each branch.
 #[derive(Clone, Debug)]
 pub struct AlgorithmWhen {
-    /// Branches in order of priority.
+    /// The branches `when`, `elsewhen` and so on. An earlier one has priority.
     pub branches: Vec<AlgorithmBranch>,
-    /// Where it stands.
+    /// Where it stands, for messages.
     pub span: Span,
 }
 
 /// One branch of an [`AlgorithmWhen`].
 #[derive(Clone, Debug)]
 pub struct AlgorithmBranch {
-    /// Conditions, any of which fires it.
+    /// The conditions. The branch is activated when any of them becomes true.
     pub conditions: Vec<ExprId>,
-    /// New values of assigned variables, by the first part of their names.
+    /// The assigned locals with their new values. The name is the first part of the assigned references.
     pub values: Vec<(Symbol, ModelicaValue)>,
-    /// Its `assert`s and `terminate`s.
+    /// The `assert` and `terminate` calls in the branch.
     pub calls: Vec<AlgorithmCall>,
 }
 
-/// An `assert` or `terminate` of an algorithm section of a model, with the values that the section has there.
+/// An `assert` or `terminate` of an algorithm section of a model. Its expressions use the values at its place.
 #[derive(Clone, Debug)]
 pub struct AlgorithmCall {
-    /// What must hold; `None` for `terminate`.
+    /// The condition that must hold; `None` for `terminate`.
     pub condition: Option<ExprId>,
-    /// When it is reached.
+    /// The condition under which the statement is reached.
     pub guard: ExprId,
-    /// Its text.
+    /// Its message text.
     pub message: Option<ModelicaValue>,
-    /// `AssertionLevel.warning`
+    /// The level is `AssertionLevel.warning`.
     pub warning: bool,
-    /// Where it stands.
+    /// Where it stands, for messages.
     pub span: Span,
 }
 
-/// What an `assert` says.
+/// The evaluated arguments of an `assert`.
 #[derive(Clone, Debug)]
 pub struct AssertArguments {
-    /// What must hold.
+    /// The condition that must hold.
     pub condition: ExprId,
-    /// The text.
+    /// The message text. `None` if it is missing or could not be evaluated.
     pub message: Option<ModelicaValue>,
-    /// `AssertionLevel.warning`
+    /// The level is `AssertionLevel.warning`.
     pub warning: bool,
 }
 
 impl<'a> Statements<'_, 'a, '_> {
-    /// Carries out statements; `None` after a message, or when they cannot be written as expressions.
+    /// Executes statements in order. The results are in the locals.
+    ///
+    /// `None` after a message, or with `not_inline` set if they cannot be evaluated to expressions.
+    ///
+    /// A conditional `break` is handled here: the statements after it are executed for the case that it was not
+    /// reached.
+    /// A conditional `return` cannot be handled that way.
     pub fn execute(&mut self, statements: &'a [Statement], view: LookupContext) -> Option<StatementFlow> {
         for (i, s) in statements.iter().enumerate() {
+            // A loop that never ends would otherwise keep the compiler busy; a procedure has a limit of its own.
             if !self.instance.eval.work.step() {
                 self.instance.eval.not_inline = true;
                 return None;
@@ -106,6 +120,7 @@ impl<'a> Statements<'_, 'a, '_> {
             match self.statement(s, view)? {
                 StatementFlow::Next => {}
                 StatementFlow::BreakIf(left) => {
+                    // After `if c then break; end if` the remaining statements apply only where `c` is false.
                     let rest = self.unless_left(left, |s| s.execute(&statements[i + 1..], view))?;
                     let Some(later) = rest.left() else {
                         self.instance.eval.not_inline = true;
@@ -119,7 +134,8 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(StatementFlow::Next)
     }
 
-    /// Carries out what is reached unless the loop around was left before.
+    /// Executes `f` for the case that the loop around was not left before.
+    /// Afterwards each local keeps its old value where `left` holds.
     fn unless_left<T>(&mut self, left: ExprId, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         if left == Exprs::ZERO {
             return f(self);
@@ -131,13 +147,18 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(done)
     }
 
-    /// Gives locals the values they had where a condition holds.
+    /// Sets each local of the frame to `if test then old else present`, where `before` holds the old values.
+    /// `None` with `not_inline` set, if the two values of a local differ in shape.
+    ///
+    /// Locals outside of the frame cannot have changed.
+    /// Strings that differ become a text that names the condition.
     fn merge_locals(&mut self, test: ExprId, before: &[(Symbol, ModelicaValue)]) -> Option<()> {
         for i in self.instance.eval.frame..self.instance.eval.locals.len() {
             let (a, b) = (&before[i].1, &self.instance.eval.locals[i].1);
             match a.zip(b, &mut |x, y, _| self.instance.exprs.if_(test, x, y)) {
                 Some(merged) => self.instance.eval.locals[i].1 = merged,
-                // which of the two it is is not known before the run, and a message can say no more
+                // Nobody knows before the run which of the two Strings applies, and a message can say no more than
+                // that.
                 None if matches!((a, b), (ModelicaValue::Text(_), ModelicaValue::Text(_))) => {
                     let words = MessagePart::Text("a text by a condition that is ".into());
                     let parts = vec![words, MessagePart::Value(test, ScalarType::Boolean)];
@@ -152,6 +173,10 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(())
     }
 
+    /// Executes one statement. `None` as for [`Self::execute`].
+    ///
+    /// Assignments change locals. Calls are executed for their assertions. The rest has functions of its own.
+    /// `break` and `return` only tell the caller how the sequence ended.
     fn statement(&mut self, s: &'a Statement, view: LookupContext) -> Option<StatementFlow> {
         match &s.kind {
             StatementKind::Assign(target, value) => {
@@ -173,6 +198,9 @@ impl<'a> Statements<'_, 'a, '_> {
         }
     }
 
+    /// `(a, , c) := f(x)`: assigns the outputs of a call to the targets in order; an omitted target skips one.
+    /// `None` after a message, if the call has fewer outputs than there are targets.
+    /// A call with a single output counts as a list of one.
     pub(in crate::instance) fn assign_tuple(
         &mut self,
         targets: &'a [Option<Expr>],
@@ -196,7 +224,8 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(())
     }
 
-    /// The local that a target names, or a message.
+    /// The reference and the index of the local that an assignment names. `None` after a message.
+    /// Inputs of functions are locals as well; that they are not assigned is checked before.
     pub(in crate::instance) fn assigned_local(&mut self, target: &'a Expr) -> Option<(&'a ComponentReference, usize)> {
         let ExprKind::Reference(r) = &target.kind else {
             return self.instance.fail(Code::TypeMismatch, "only a variable can be assigned to", target.span);
@@ -209,13 +238,16 @@ impl<'a> Statements<'_, 'a, '_> {
         local.map(|i| (r, i))
     }
 
-    /// `target := value` for a local, or for a variable that the algorithm section was given as one.
+    /// `target := value`: replaces the value of a local, or one part of it. `None` as for [`Self::execute`].
+    /// Variables of the model that an algorithm section assigns are locals too.
+    /// Integers become Reals for a Real variable.
     fn assign(&mut self, target: &'a Expr, value: ModelicaValue, view: LookupContext, span: Span) -> Option<()> {
         let (r, i) = self.assigned_local(target)?;
         let name = r.parts[0].name;
         let value = value.first_output();
         let old = self.instance.eval.locals[i].1.clone();
         let whole = r.parts.len() == 1 && r.parts[0].subscripts.is_empty();
+        // `Real x[:]` takes the size of its value; every other variable keeps its size (MLS 12.4.5).
         if whole && old.dims().len() == value.dims().len() && self.is_flexible(view, name.name) {
             self.instance.eval.locals[i].1 = value;
             return Some(());
@@ -225,12 +257,13 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(())
     }
 
-    /// Whether a variable of a function is declared with a size that its value brings, as `Real x[:]`.
+    /// Whether a variable of a function is declared with a flexible size, as `Real x[:]` (MLS 12.4.5).
     pub(in crate::instance) fn is_flexible(&mut self, view: LookupContext, name: Symbol) -> bool {
         self.declaration(view, name).is_some_and(|c| c.subscripts.iter().any(|s| matches!(s, Subscript::All(_))))
     }
 
-    /// The declaration of a variable of a function.
+    /// The declaration of a variable. `None` if the name is no component.
+    /// The first part of a reference names it. Fields of records have no declaration here.
     pub(in crate::instance) fn declaration(
         &mut self,
         view: LookupContext,
@@ -243,6 +276,16 @@ impl<'a> Statements<'_, 'a, '_> {
         }
     }
 
+    /// The value `old` in which the part that `r.parts[part..]` names is replaced by `value`.
+    ///
+    /// `old` is the value of what `r.parts[..part]` names, and the subscripts of `r.parts[part]` are applied here.
+    /// `None` as for [`Self::execute`].
+    ///
+    /// ```text
+    /// a[2].x := 1;   // replaces the field x in element 2 of the value of a
+    /// ```
+    ///
+    /// Without subscripts the complete value is replaced. A slice takes an array with as many elements.
     fn replaced(
         &mut self,
         old: &ModelicaValue,
@@ -263,6 +306,7 @@ impl<'a> Statements<'_, 'a, '_> {
         let ModelicaValue::Array { dims, elements } = old else {
             return self.instance.fail(Code::BadIndex, &format!("`{}` is not an array", p.name.name), span);
         };
+        // Only the variable itself has a declaration at hand; index types of fields are not checked.
         let by = if part == 0 { self.instance.evaluator().counted_by(view, p.name.name) } else { Vec::new() };
         let picks = self.picks(dims, &by, p, view, span)?;
         if picks.iter().any(|p| matches!(p, SubscriptValue::Symbolic(_))) {
@@ -287,6 +331,9 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(ModelicaValue::Array { dims: dims.clone(), elements: Rc::new(elements) })
     }
 
+    /// The record `old` in which the field `r.parts[part]`, or a part of it, is replaced by `value`.
+    /// `None` after a message, if there is no such field.
+    /// The other fields keep their values. A record value is copied, because other variables may share it.
     fn replaced_field(
         &mut self,
         old: &ModelicaValue,
@@ -314,7 +361,9 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(ModelicaValue::Record(Rc::new(crate::instance::value::RecordValue { fields, class: record.class })))
     }
 
-    /// What the subscripts of a target pick, all dimensions of the array included.
+    /// Evaluates the subscripts of a target, one entry for each dimension. Missing subscripts select all.
+    /// `None` after a message.
+    /// `by` holds the index types of the dimensions, as far as they are known.
     fn picks(
         &mut self,
         dims: &[usize],
@@ -335,8 +384,14 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(picks)
     }
 
-    /// `a[k] := value` with a `k` that changes during the run: every element that `k` may mean takes the value if it
-    /// does. In functions a procedure does this.
+    /// `a[k] := value` with a `k` that changes during the run: each element becomes `if k == i then value else a[i]`.
+    ///
+    /// This is done in algorithm sections of models only. In functions, and for slices or fields, `not_inline` is set
+    /// instead.
+    ///
+    /// `dims` and `elements` are the array before, `picks` its subscripts, at least one of them symbolic.
+    /// `last` is false if a field follows the subscripts.
+    /// Several symbolic subscripts must all hit the element.
     fn replaced_somewhere(
         &mut self,
         dims: &[usize],
@@ -353,6 +408,7 @@ impl<'a> Statements<'_, 'a, '_> {
         let mut replaced = Vec::with_capacity(elements.len());
         for (at, old) in elements.iter().enumerate() {
             let value = self.matching(old, value.clone(), span)?;
+            // The row-major position is taken apart from the last dimension; all subscripts must hit.
             let (mut hit, mut rest) = (Exprs::ONE, at);
             for (p, &n) in picks.iter().zip(dims).rev() {
                 let place = rest % n;
@@ -372,7 +428,9 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(ModelicaValue::array(dims.to_vec(), replaced))
     }
 
-    /// A value for a variable that holds another now: sizes and types must fit.
+    /// Checks a value against the present value of the variable that takes it: sizes and types must fit.
+    /// Integers become Reals where needed. `None` after a message.
+    /// The fields of records are not compared.
     fn matching(&mut self, old: &ModelicaValue, value: ModelicaValue, span: Span) -> Option<ModelicaValue> {
         if old.dims() != value.dims() {
             let message = format!("{} cannot take {}", old.describe(), value.describe());
@@ -389,14 +447,23 @@ impl<'a> Statements<'_, 'a, '_> {
         }
     }
 
-    /// Whether a value that changes decides if the present statement is carried out.
+    /// Whether the run may never reach the present statement, because an unknown condition decides.
     fn may_not_come_here(&self) -> bool {
         !self.instance.eval.guards.is_empty()
             || self.instance.eval.mode.procedure
             || self.instance.eval.mode.under_procedure
     }
 
-    /// `assert` in a function: known to hold, known to fail, or left to a procedure.
+    /// A call as a statement: `assert`, `terminate`, or a function called for its assertions.
+    ///
+    /// In a function an assertion that holds is dropped, and one that fails is an error. If its condition is not known,
+    /// the function must become a procedure. In an algorithm section of a model assertions are kept for the run.
+    ///
+    /// - `terminate` is kept for the run. `reinit` is an error, it belongs to equations.
+    /// - The outputs of any other function are dropped.
+    ///
+    /// `None` as for [`Self::execute`].
+    /// A condition that is not known sets `not_inline`: the procedure then checks it.
     fn statement_call(&mut self, call: &'a Expr, view: LookupContext) -> Option<StatementFlow> {
         if let ExprKind::Call { function, args, .. } = &call.kind {
             match function.parts[0].name.name.as_str() {
@@ -407,6 +474,7 @@ impl<'a> Statements<'_, 'a, '_> {
                     let c = self.instance.evaluator().eval(args.first()?, view)?;
                     return match c.as_number(&self.instance.exprs) {
                         Some(x) if x != 0.0 => Some(StatementFlow::Next),
+                        // A failing assertion in a branch that may never be taken is not an error yet.
                         Some(_) if self.may_not_come_here() => {
                             (self.instance.eval.not_inline, self.instance.eval.may_fail) = (true, true);
                             None
@@ -451,7 +519,10 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(StatementFlow::Next)
     }
 
-    /// Leaves what must hold, or a `terminate`, to the flat model.
+    /// Keeps an assertion, or a `terminate` if there is no condition, for the flat model.
+    /// It applies where all conditions of the `if`s around it hold.
+    ///
+    /// `message` is `None` if it was not given. `warning` is the assertion level.
     pub(in crate::instance) fn keep_call(
         &mut self,
         condition: Option<ExprId>,
@@ -467,7 +538,10 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(StatementFlow::Next)
     }
 
-    /// The parts of an `assert`; its condition makes no events.
+    /// Evaluates the arguments of an `assert` (MLS 8.3.7). Its condition raises no events. `None` after a message.
+    ///
+    /// Arguments may be positional or named: `condition`, `message`, `level`.
+    /// The level must be known. A message that cannot be evaluated is left out.
     pub fn assertion(&mut self, call: &'a Expr, view: LookupContext) -> Option<AssertArguments> {
         let ExprKind::Call { args, named, .. } = &call.kind else { return None };
         let by_name = |n: &str| named.iter().find(|(i, _)| i.name == n).map(|(_, e)| e);
@@ -482,6 +556,7 @@ impl<'a> Statements<'_, 'a, '_> {
         let message = args.get(1).or_else(|| by_name("message")).and_then(|m| self.instance.evaluator().eval(m, view));
         let warning = match args.get(2).or_else(|| by_name("level")) {
             Some(level) => {
+                // `AssertionLevel.warning` is the first literal.
                 self.instance.evaluator().constant(level, view)?.as_number(&self.instance.exprs) == Some(1.0)
             }
             None => false,
@@ -489,6 +564,14 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(AssertArguments { condition, message, warning })
     }
 
+    /// An `if` statement.
+    ///
+    /// A known condition selects its branch. Otherwise both branches are executed on the same locals, and the results
+    /// are merged. `break` in one of the branches makes the rest of the loop conditional, in models only.
+    ///
+    /// `branches` are the conditions with their statements, `otherwise` those of `else`. Conditions are tested in
+    /// order.
+    /// `None` as for [`Self::execute`].
     fn if_statement(
         &mut self,
         branches: &'a [(Expr, Vec<Statement>)],
@@ -506,6 +589,7 @@ impl<'a> Statements<'_, 'a, '_> {
         let before = self.instance.eval.locals.clone();
         let not = self.instance.exprs.not(test);
         let first = self.guarded(test, |s| s.execute(body, view))?;
+        // The second branch starts from the same values as the first one.
         let after = std::mem::replace(&mut self.instance.eval.locals, before);
         let second = self.guarded(not, |s| s.if_statement(rest, otherwise, view))?;
         let ways = if self.instance.eval.depth == 0 { first.left().zip(second.left()) } else { None };
@@ -515,11 +599,13 @@ impl<'a> Statements<'_, 'a, '_> {
             self.instance.eval.not_inline = true;
             return None;
         };
+        // The locals hold the results of the second branch, and `after` those of the first.
         self.merge_locals(test, &after)?;
         Some(StatementFlow::leaving(self.instance.exprs.if_(test, a, b)))
     }
 
-    /// Runs statements that are reached under a condition only.
+    /// Runs `f` for statements or expressions that are reached only if `guard` holds.
+    /// Guards also tell whether a failing assertion may be unreachable.
     pub(in crate::instance) fn guarded<T>(
         &mut self,
         guard: ExprId,
@@ -531,7 +617,10 @@ impl<'a> Statements<'_, 'a, '_> {
         done
     }
 
-    /// A loop; in a section of a model one whose trajectory is not known becomes a procedure.
+    /// A `for` or `while` loop.
+    ///
+    /// In an algorithm section of a model a loop that cannot be unrolled becomes a procedure.
+    /// In a function `None` is returned with `not_inline` set, and the complete function becomes a procedure.
     fn loop_statement(&mut self, s: &'a Statement, view: LookupContext) -> Option<StatementFlow> {
         let before = self.instance.eval.locals.clone();
         let marks = (self.instance.diagnostics.len(), self.instance.eval.calls.len(), self.instance.eval.whens.len());
@@ -544,6 +633,7 @@ impl<'a> Statements<'_, 'a, '_> {
         if !refused || self.instance.eval.depth > 0 {
             return flow;
         }
+        // The attempt to unroll the loop is undone before the loop is translated.
         self.instance.eval.not_inline = false;
         self.instance.eval.locals = before;
         self.instance.eval.calls.truncate(marks.1);
@@ -551,7 +641,8 @@ impl<'a> Statements<'_, 'a, '_> {
         self.instance.procedures().loop_as_procedure(s, view).map(|()| StatementFlow::Next)
     }
 
-    /// Whether the bounds of a range change during the run: then it is no list of values.
+    /// Whether the bounds of a range change during the run, so that the number of repetitions is not known.
+    /// `None` after a message.
     fn varies(&mut self, range: Option<&'a Expr>, view: LookupContext) -> Option<bool> {
         let Some(ExprKind::Range { from, step, to }) = range.map(|r| &r.kind) else { return Some(false) };
         for e in [Some(&**from), step.as_deref(), Some(&**to)].into_iter().flatten() {
@@ -563,6 +654,11 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(false)
     }
 
+    /// A `for` statement over several iterators, the last one fastest. Each repetition is executed in turn.
+    /// `None` as for [`Self::execute`].
+    ///
+    /// `left` is the condition under which an earlier repetition has left the loop by `break`.
+    /// A loop in a model whose bounds change during the run sets `not_inline`.
     fn for_statement(
         &mut self,
         iterators: &'a [bramah_syntax::ast::ForIndex],
@@ -582,6 +678,7 @@ impl<'a> Statements<'_, 'a, '_> {
                 s.instance.eval.locals.pop();
                 flow
             })?;
+            // A `return` also ends the repetitions that are left.
             let Some(now) = flow.left() else { return Some(StatementFlow::Return) };
             left = self.instance.exprs.or(left, now);
             if left == Exprs::ONE {
@@ -591,6 +688,10 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(StatementFlow::Next)
     }
 
+    /// A `while` statement whose condition is known at each repetition. `None` as for [`Self::execute`].
+    ///
+    /// The condition is a number at each repetition as long as the loop depends on known values only.
+    /// Otherwise, or if the budget is used up, `not_inline` is set.
     fn while_statement(
         &mut self,
         condition: &'a Expr,
@@ -598,6 +699,7 @@ impl<'a> Statements<'_, 'a, '_> {
         view: LookupContext,
     ) -> Option<StatementFlow> {
         loop {
+            // Each test counts as a statement, so that a loop with an empty body ends as well.
             let may_go_on = self.instance.eval.work.step();
             let c = self.instance.evaluator().eval(condition, view)?;
             match c.as_number(&self.instance.exprs) {
@@ -620,7 +722,13 @@ impl<'a> Statements<'_, 'a, '_> {
         }
     }
 
-    /// `when` in an algorithm section of a model: what each branch assigns is kept for the flat model.
+    /// `when` in an algorithm section of a model: what each branch assigns is collected for the flat model.
+    ///
+    /// After the statement the locals have their values from before: a branch applies only at its events (MLS 11.2.7).
+    /// `None` after a message.
+    ///
+    /// Each branch is executed on the values before the `when`, without events of its own.
+    /// In functions a `when` is an error (MLS 12.2).
     fn when_statement(
         &mut self,
         branches: &'a [(Expr, Vec<Statement>)],
@@ -632,6 +740,7 @@ impl<'a> Statements<'_, 'a, '_> {
         }
         let mut collected = AlgorithmWhen { branches: Vec::new(), span };
         let before = self.instance.eval.locals.clone();
+        // Assertions inside a branch belong to the branch, those before it to the section.
         let outside = std::mem::take(&mut self.instance.eval.calls);
         for (condition, body) in branches {
             let conditions = self.when_conditions(condition, view)?;
@@ -640,6 +749,7 @@ impl<'a> Statements<'_, 'a, '_> {
             done?;
             let frame = self.instance.eval.frame;
             let mut values = Vec::new();
+            // Locals whose expressions differ from those before the branch were assigned by it.
             for (i, (name, value)) in self.instance.eval.locals.iter().enumerate().skip(frame) {
                 if !same(&before[i].1, value) {
                     values.push((*name, value.clone()));
@@ -653,7 +763,8 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(StatementFlow::Next)
     }
 
-    /// The conditions of a `when`: one, or a vector of which any fires.
+    /// The conditions of a `when`: one Boolean, or a vector of which any activates it (MLS 8.3.5).
+    /// Conditions that are always false are left out. `None` after a message.
     pub fn when_conditions(&mut self, condition: &'a Expr, view: LookupContext) -> Option<Vec<ExprId>> {
         let value = self.instance.evaluator().eval(condition, view)?;
         let mut conditions = Vec::new();
@@ -668,7 +779,12 @@ impl<'a> Statements<'_, 'a, '_> {
     }
 }
 
-/// What is assigned in statements: outside `when`, and inside.
+/// Collects the references that statements assign: outside of `when` in `always`, inside in `in_when`.
+/// `inside` is true if the statements themselves stand in a `when`.
+///
+/// First the statements of the sequence itself, then those nested in `if`, loops and `when`.
+/// A variable that is assigned several times appears several times.
+/// The lists keep the order in which the assignments are found.
 pub fn assigned<'a>(
     statements: &'a [Statement],
     inside: bool,
@@ -700,7 +816,7 @@ pub fn assigned<'a>(
     }
 }
 
-/// Whether two values hold the same expressions.
+/// Whether two values consist of the same expressions. Shapes are not compared.
 pub(in crate::instance) fn same(a: &ModelicaValue, b: &ModelicaValue) -> bool {
     let (mut x, mut y) = (Vec::new(), Vec::new());
     a.scalars(&mut x);

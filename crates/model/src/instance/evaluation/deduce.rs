@@ -1,5 +1,7 @@
-//! Loops without a range, `for i loop x[i] = ...`: it is `1:size(x, 1)`, after an array that the variable indexes alone
-//! (MLS 10.4.1.1, 11.2.2.1).
+//! Loops without a range: `for i loop x[i] := ...; end for` runs over `1:size(x, 1)` (MLS 10.4.1.1, 11.2.2.1).
+//!
+//! The body is searched for arrays that the loop variable alone indexes. Their sizes must agree.
+//! Other parts of the compiler use the walk over references as well, see `names_of_declaration`.
 
 use crate::instance::evaluation::ranges::ArrayExtent;
 use crate::instance::lookup::LookupResult;
@@ -15,22 +17,32 @@ use bramah_syntax::symbol::Symbol;
 /// What a loop repeats.
 #[derive(Clone, Copy)]
 pub enum LoopBody<'a> {
-    /// An element of an array or reduction.
+    /// The expression of an array or reduction: `{x[i] for i}`.
     Expr(&'a Expr),
-    /// Equations.
+    /// The equations of a `for` equation.
     Equations(&'a [Equation]),
-    /// Statements.
+    /// The statements of a `for` statement.
     Statements(&'a [Statement]),
 }
 
 impl<'a> Evaluator<'_, 'a, '_> {
-    /// How often a loop over `name` runs, where an array tells.
+    /// The dimension over which a loop with the variable `name` runs.
+    ///
+    /// It is that of the arrays indexed by `name` alone. `None` if there is none, or after a message if their sizes
+    /// differ.
+    ///
+    /// ```text
+    /// for i loop
+    ///   x[i] = 2 * y[i];    // 1:size(x, 1), and y must have the same size
+    /// end for;
+    /// ```
     pub(in crate::instance) fn deduced_extent(
         &mut self,
         name: Symbol,
         body: LoopBody<'a>,
         view: LookupContext,
     ) -> Option<ArrayExtent> {
+        // Each entry: the reference, the index of the part with the subscript, and the position of the subscript.
         let mut found: Vec<(&'a ComponentReference, usize, usize)> = Vec::new();
         walk(body, &mut |r| {
             for (p, part) in r.parts.iter().enumerate() {
@@ -57,7 +69,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
         first
     }
 
-    /// The size of the array that `parts[..=part]` names without its subscripts.
+    /// Dimension `dimension` of the array that `parts[..=part]` names without its subscripts.
+    /// `None` if that is no array.
+    ///
+    /// A local of a function has the sizes of its value. A component has those of its node.
+    /// `view` is the place of the loop.
+    /// Without subscripts means that `x[i].y[j]` asks for the array `y` of the first element of `x`.
     fn indexed_size(
         &mut self,
         r: &'a ComponentReference,
@@ -66,6 +83,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         view: LookupContext,
     ) -> Option<ArrayExtent> {
         let first = r.parts[0].name.name;
+        // Only a reference that begins with the array itself can be a local here.
         if part == 0
             && let Some(i) = self.instance.local(first)
         {
@@ -76,6 +94,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         let LookupResult::Component(mut scope, mut index) = self.instance.names().lookup(view, first)? else {
             return None;
         };
+        // Elements of a component array have the same sizes, so the first one stands for all.
         for step in &r.parts[1..=part] {
             let first = self.first_of(scope, index)?;
             let InstanceNode::Object(inner) = *self.instance.node(first) else { return None };
@@ -91,7 +110,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
-    /// A component, or the first element of an array of them.
+    /// The node of a component, or of the first element of a component array. `None` for an empty array.
     fn first_of(&mut self, scope: crate::instance::ScopeId, index: u32) -> Option<crate::instance::NodeId> {
         let node = self.instance.builder().component(scope, index)?;
         match self.instance.node(node) {
@@ -101,7 +120,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 }
 
-/// The first parts of the names in a declaration's sizes and value.
+/// The first parts of all names in the dimensions and the value of a declaration.
+/// The order in which locals of a function are initialized depends on them.
 pub(in crate::instance) fn names_of_declaration(c: &ComponentDeclaration) -> Vec<Symbol> {
     let mut found = Vec::new();
     let mut see = |r: &ComponentReference| found.push(r.parts[0].name.name);
@@ -112,12 +132,13 @@ pub(in crate::instance) fn names_of_declaration(c: &ComponentDeclaration) -> Vec
     found
 }
 
+/// Whether a subscript consists of the name `name` alone.
 fn is_name(s: &Subscript, name: Symbol) -> bool {
     matches!(s, Subscript::Expr(Expr { kind: ExprKind::Reference(r), .. })
         if r.parts.len() == 1 && r.parts[0].subscripts.is_empty() && r.parts[0].name.name == name)
 }
 
-/// Shows all references to `see`.
+/// Calls `see` for every reference in a loop body, in the order of the text, inside subscripts too.
 fn walk<'a>(body: LoopBody<'a>, see: &mut dyn FnMut(&'a ComponentReference)) {
     match body {
         LoopBody::Expr(e) => expression(e, see),
@@ -126,6 +147,8 @@ fn walk<'a>(body: LoopBody<'a>, see: &mut dyn FnMut(&'a ComponentReference)) {
     }
 }
 
+/// Calls `see` for the references of one equation. Conditions of `if` and `when`, and ranges, are left out.
+/// Both sides of an equation and the arguments of calls are searched.
 fn equation<'a>(e: &'a Equation, see: &mut dyn FnMut(&'a ComponentReference)) {
     match &e.kind {
         EquationKind::Equal(a, b) | EquationKind::Connect(a, b) => [a, b].into_iter().for_each(|e| expression(e, see)),
@@ -139,6 +162,9 @@ fn equation<'a>(e: &'a Equation, see: &mut dyn FnMut(&'a ComponentReference)) {
     }
 }
 
+/// Calls `see` for the references of one statement. Conditions and ranges are left out.
+/// Targets of assignments are searched as well, because their subscripts determine the loop.
+/// An outer loop over the same array counts like any other reference.
 fn statement<'a>(s: &'a Statement, see: &mut dyn FnMut(&'a ComponentReference)) {
     match &s.kind {
         StatementKind::Assign(a, b) => [a, b].into_iter().for_each(|e| expression(e, see)),
@@ -157,6 +183,7 @@ fn statement<'a>(s: &'a Statement, see: &mut dyn FnMut(&'a ComponentReference)) 
     }
 }
 
+/// Calls `see` for the references in an expression, from outside inwards.
 fn expression<'a>(e: &'a Expr, see: &mut dyn FnMut(&'a ComponentReference)) {
     if let ExprKind::Reference(r) = &e.kind {
         see(r);
@@ -164,6 +191,7 @@ fn expression<'a>(e: &'a Expr, see: &mut dyn FnMut(&'a ComponentReference)) {
     e.each_child(&mut |inner| expression(inner, see));
 }
 
+/// Calls `see` for the references in a subscript.
 fn subscript<'a>(s: &'a Subscript, see: &mut dyn FnMut(&'a ComponentReference)) {
     if let Subscript::Expr(e) = s {
         expression(e, see);

@@ -1,4 +1,7 @@
-//! Subscripts: elements and parts of arrays, by numbers that are known or change during the run.
+//! Subscripts: `x[2]`, `x[2:3, :]`, `x[i]` with an `i` that may change during the run (MLS 10.5).
+//!
+//! Subscripts are evaluated to [`SubscriptValue`]s. [`places`] turns known ones into positions in row-major order.
+//! The others become an indexed slot in a procedure, or a chain of `if` in an expression.
 
 use crate::instance::errors::short;
 use crate::instance::value::ModelicaValue;
@@ -10,7 +13,8 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
 impl<'a> Evaluator<'_, 'a, '_> {
-    /// Applies subscripts to a value.
+    /// Applies subscripts to a computed value, whose index types are not known. `None` after a message.
+    /// The complete subscripts are `subscripts`; `view` is where their names are looked up.
     pub(in crate::instance) fn subscript(
         &mut self,
         value: ModelicaValue,
@@ -21,7 +25,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.subscript_by(value, subscripts, &[], view, span)
     }
 
-    /// Applies subscripts to the value of an array of which is known what counts along its dimensions.
+    /// Applies subscripts to an array. `by` holds the index types of its dimensions, as far as they are known.
+    /// Missing subscripts select the complete dimension. `None` after a message.
+    ///
+    /// `span` is the complete expression. More subscripts than dimensions are an error.
+    /// Several vectors as subscripts select all combinations: `a[{1, 2}, {3, 4}]` is a 2 by 2 array (MLS 10.5).
     pub(in crate::instance) fn subscript_by(
         &mut self,
         value: ModelicaValue,
@@ -44,6 +52,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         for (i, s) in subscripts.iter().enumerate() {
             picks.push(self.index(s, (dims[i], by.get(i).copied()), view, span)?);
         }
+        // Dimensions without a subscript are kept, as if `:` were written.
         picks.extend(dims[subscripts.len()..].iter().map(|&n| SubscriptValue::Many((0..n).collect())));
         if picks.iter().any(|p| matches!(p, SubscriptValue::Symbolic(_))) {
             return self.dynamic(dims, elements, &picks, span);
@@ -51,8 +60,18 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(pick(dims, elements, &picks))
     }
 
-    /// One subscript: a known place, several, or one only known at run time. What counts along the dimension is not
-    /// known of an array that was computed.
+    /// Evaluates one subscript for a dimension with `size` elements.
+    ///
+    /// `by` is the index type of the dimension; `None` for computed arrays, whose index type is not known.
+    /// A parameter as subscript outside of functions becomes structural, so that the element is known.
+    /// A subscript that changes is checked during the run. `None` after a message.
+    ///
+    /// - `:` selects all positions.
+    /// - An Integer or enumeration value selects one position, a Boolean one of two.
+    /// - A vector selects its elements in order.
+    /// - An enumeration type or `Boolean` selects all positions.
+    ///
+    /// In a function a subscript of an argument may be symbolic; the caller then needs a procedure.
     pub(in crate::instance) fn index(
         &mut self,
         s: &'a Subscript,
@@ -61,10 +80,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
         span: Span,
     ) -> Option<SubscriptValue> {
         let Subscript::Expr(e) = s else { return Some(SubscriptValue::Many((0..size).collect())) };
+        // `x[Color]` and `x[Boolean]` select all elements in the order of the values.
         if let Some(all) = self.enumeration_range(e, view) {
             self.check_index(all.first().and_then(ModelicaValue::element_type), by, e.span)?;
             return Some(SubscriptValue::Many((0..all.len()).collect()));
         }
+        // `end` inside of the subscript means the last index of this dimension (MLS 10.5).
         self.instance.eval.ends.push((size, by.unwrap_or(ScalarType::Integer)));
         let value = self.eval(e, view);
         self.instance.eval.ends.pop();
@@ -76,6 +97,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 match self.instance.exprs.as_num(*id) {
                     Some(x) => Some(SubscriptValue::One(self.in_range(x, size, e.span)?)),
                     None => {
+                        // Inside a function an expression of arguments has no value that could be looked up.
                         let outside = self.instance.eval.frame == 0 && !self.instance.eval.mode.procedure;
                         if outside
                             && self.instance.variability(*id) <= Variability::Parameter
@@ -86,6 +108,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                                 return Some(SubscriptValue::One(self.in_range(x, size, e.span)?));
                             }
                         }
+                        // In a procedure the index depends on slots, which an assertion of the flat model cannot read.
                         if *ty == ScalarType::Integer && !self.instance.eval.mode.procedure {
                             self.watch_index(*id, size, e.span);
                         }
@@ -99,6 +122,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                     let Some(x) = v.as_number(&self.instance.exprs) else {
                         return self.instance.fail(Code::NotConstant, "an index must be known before the run", span);
                     };
+                    // Numbers count from 1; `false`, the first Boolean, is 0.
                     let first = if v.element_type() == Some(ScalarType::Boolean) { 0.0 } else { 1.0 };
                     places.push(self.in_range(x - first + 1.0, size, e.span)?);
                 }
@@ -108,8 +132,9 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
-    /// An array is indexed by what its declaration counts by (MLS 10.5): literals of an enumeration and numbers do not
-    /// stand for each other.
+    /// Checks that a subscript has the index type of the dimension (MLS 10.5).
+    /// Enumeration literals and Integers are not interchangeable. Unknown types pass. `None` after a message.
+    /// `given` is the type of the subscript. `None` for either type means that it is not known, which passes.
     pub(in crate::instance) fn check_index(
         &mut self,
         given: Option<ScalarType>,
@@ -137,18 +162,22 @@ impl<'a> Evaluator<'_, 'a, '_> {
         None
     }
 
-    /// `false` and `true` as indices of an array declared with `[Boolean]`.
+    /// The position for a Boolean subscript: `false` is the first element, `true` the second.
+    /// `x[b]` with a changing `b` becomes the subscript `if b then 2 else 1`.
     pub(in crate::instance) fn boolean_index(&mut self, e: ExprId) -> SubscriptValue {
         match self.instance.exprs.as_num(e) {
             Some(x) => SubscriptValue::One(usize::from(x != 0.0)),
             None => {
                 let two = self.instance.exprs.num(2.0);
+                // As an Integer expression, so that it is handled like every other symbolic subscript.
                 SubscriptValue::Symbolic(self.instance.exprs.if_(e, two, Exprs::ONE))
             }
         }
     }
 
-    /// An index that changes must stay inside the array during the run, wherever it is used.
+    /// Adds an assertion that a changing subscript stays within 1 to `size`.
+    /// It applies under the conditions of the `if`s around the subscript.
+    /// A violation stops the run with a message that shows the value of the subscript.
     pub(in crate::instance) fn watch_index(&mut self, index: ExprId, size: usize, span: Span) {
         let last = self.instance.exprs.num(size as f64);
         let (low, high) = (
@@ -164,6 +193,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.statements().keep_call(Some(condition), Some(ModelicaValue::Text(Rc::new(parts))), false, span);
     }
 
+    /// A known subscript as a position from 0. `None` after a message, if it is no whole number from 1 to `size`.
     pub(in crate::instance) fn in_range(&mut self, x: f64, size: usize, span: Span) -> Option<usize> {
         if x >= 1.0 && x <= size as f64 && x.fract() == 0.0 {
             return Some(x as usize - 1);
@@ -171,7 +201,14 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.fail(Code::BadIndex, &format!("index {x} lies outside 1..{size}"), span)
     }
 
-    /// An element chosen at run time: a chain of `if`, or an indexed slot in a procedure.
+    /// Elements at a position that is known only during the run.
+    ///
+    /// In a procedure this is an indexed slot. Elsewhere it is a chain of `if` over all elements.
+    /// `None` after a message, or with `not_inline` set if the function around must become a procedure.
+    ///
+    /// `picks` has one entry for each dimension. With several symbolic entries the function calls itself for each of
+    /// them.
+    /// An empty array has no element to choose, which is reported.
     pub(in crate::instance) fn dynamic(
         &mut self,
         dims: &[usize],
@@ -179,6 +216,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         picks: &[SubscriptValue],
         span: Span,
     ) -> Option<ModelicaValue> {
+        // A chain of `if` over many elements, repeated for each use, is longer than a procedure with an index.
         if self.instance.eval.frame > 0 && !self.instance.eval.mode.procedure && elements.len() > 12 {
             self.instance.eval.not_inline = true;
             return None;
@@ -191,6 +229,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         let at = picks.iter().position(|p| matches!(p, SubscriptValue::Symbolic(_)))?;
         let SubscriptValue::Symbolic(index) = picks[at] else { return None };
         let mut result: Option<ModelicaValue> = None;
+        // From the last element to the first: the chain is built from its end, and tests `index <= k` from below.
         for k in (0..dims[at]).rev() {
             let mut fixed = picks.to_vec();
             fixed[at] = SubscriptValue::One(k);
@@ -212,18 +251,19 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 }
 
-/// A subscript after evaluation.
+/// A subscript after evaluation. Positions are counted from 0.
 #[derive(Clone, Debug)]
 pub enum SubscriptValue {
-    /// One place, from 0.
+    /// One position; the dimension disappears.
     One(usize),
-    /// Several places; the dimension stays.
+    /// Several positions; the dimension stays, with this many elements.
     Many(Vec<usize>),
-    /// A place known at run time only.
+    /// A position known only during the run, as an expression counted from 1; the dimension disappears.
     Symbolic(ExprId),
 }
 
-/// Picks elements by known places.
+/// Selects elements at known positions: one element, or an array with the sizes that stay.
+/// `dims` and `elements` are the array in row-major order; there is one entry of `picks` for each dimension.
 pub(in crate::instance) fn pick(dims: &[usize], elements: &[ModelicaValue], picks: &[SubscriptValue]) -> ModelicaValue {
     let (kept, places) = places(dims, picks);
     if kept.is_empty() {
@@ -232,7 +272,12 @@ pub(in crate::instance) fn pick(dims: &[usize], elements: &[ModelicaValue], pick
     ModelicaValue::array(kept, places.into_iter().map(|i| elements[i].clone()).collect())
 }
 
-/// The row-major places of what is picked, and the sizes that stay.
+/// The sizes that stay, and the row-major positions of the selected elements.
+/// Symbolic subscripts select nothing here; callers handle them before.
+///
+/// ```text
+/// dims [2, 3], picks [One(1), Many([0, 2])]   // sizes [2], positions [3, 5]
+/// ```
 pub(in crate::instance) fn places(dims: &[usize], picks: &[SubscriptValue]) -> (Vec<usize>, Vec<usize>) {
     let mut places = vec![0usize];
     let mut kept = Vec::new();
@@ -245,6 +290,7 @@ pub(in crate::instance) fn places(dims: &[usize], picks: &[SubscriptValue]) -> (
             }
             SubscriptValue::Symbolic(_) => &[],
         };
+        // Each dimension extends the positions so far: the row-major position is built from the left.
         places = places.iter().flat_map(|&base| choices.iter().map(move |&c| base * d + c)).collect();
     }
     (kept, places)

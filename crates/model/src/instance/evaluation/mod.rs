@@ -1,4 +1,11 @@
-//! Expressions and statements carried out: symbolic in the flat model, by number where a value must be known.
+//! Evaluation of expressions and execution of statements.
+//!
+//! The results are symbolic expressions of the flat model, or numbers where the structure needs a value.
+//! - [`expressions`] is the entry; `operators`, `indices`, `ranges` and [`references`] handle the forms of expressions.
+//! - `parameters` finds values of parameters, `shapes` sizes of what has no value, [`deduce`] ranges of loops without
+//!   one.
+//! - [`algorithm`] executes statements, `sections` is the entry for `flat`, [`streams`] mixes what flows carry.
+//! - `overload` has the operators of operator records, `state` the mode and the locals.
 
 pub mod algorithm;
 pub mod deduce;

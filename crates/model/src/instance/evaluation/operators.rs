@@ -1,4 +1,8 @@
-//! Operators on values: numbers, arrays and matrices, texts, relations.
+//! Operators on values: arithmetic on numbers, arrays and matrices, relations, logic, and operators on Strings (MLS
+//! 10.6).
+//!
+//! The evaluator calls [`Operators`] with evaluated operands and the place of the expression for messages.
+//! The result is symbolic; the expression pool folds what is known. `None` means that a message was reported.
 
 use crate::instance::Operators;
 use crate::instance::value::{ModelicaValue, wider};
@@ -9,12 +13,17 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use std::rc::Rc;
 
 impl<'a> Operators<'_, 'a, '_> {
+    /// Applies a unary operator to a value, element by element.
+    ///
+    /// `-` and `+` need numbers, `not` needs Booleans. An operator record with a function for the operator comes first.
+    /// For an array the operator is applied to each element, and the type stays.
     pub(in crate::instance) fn unary(
         &mut self,
         op: UnaryOp,
         value: ModelicaValue,
         span: Span,
     ) -> Option<ModelicaValue> {
+        // Operator records have their own functions (MLS 14).
         if let Some(result) = self.overloaded_unary(op, &value, span) {
             return result;
         }
@@ -27,12 +36,22 @@ impl<'a> Operators<'_, 'a, '_> {
             UnaryOp::Plus | UnaryOp::ElementPlus => Some(value),
             UnaryOp::Minus | UnaryOp::ElementMinus => match ty {
                 Some(ScalarType::Real | ScalarType::Integer) => Some(value.map(&mut |e, _| self.instance.exprs.neg(e))),
+                // An empty array has no element type, and nothing to negate.
                 None if value.elements().is_empty() => Some(value),
                 _ => self.instance.evaluator().wrong_type("a number", &value, span),
             },
         }
     }
 
+    /// Applies a binary operator to two values.
+    ///
+    /// The plain operators follow linear algebra: `*` is the matrix product and `+` needs equal shapes.
+    /// The operators with a dot, `.*` and the like, work element by element (MLS 10.6).
+    ///
+    /// - `+`, `-`: equal shapes. `*`: scalars, vectors, matrices. `/`: a scalar on the right. `^`: scalars or a matrix.
+    /// - Relations: two scalars. `and`, `or`: Booleans of equal shape.
+    ///
+    /// `None` after a message.
     pub(in crate::instance) fn binary(
         &mut self,
         op: BinaryOp,
@@ -41,6 +60,7 @@ impl<'a> Operators<'_, 'a, '_> {
         span: Span,
     ) -> Option<ModelicaValue> {
         use BinaryOp as B;
+        // Operator records come first, then Strings: neither has the shapes that the rest checks.
         if let Some(result) = self.overloaded_binary(op, &a, &b, span) {
             return result;
         }
@@ -52,7 +72,7 @@ impl<'a> Operators<'_, 'a, '_> {
             B::Mul => self.product(&a, &b, span),
             B::Div if b.dims().is_empty() => self.broadcast(op, &a, &b, span),
             B::Pow if !a.dims().is_empty() => self.matrix_power(&a, &b, span),
-            // arrays are divided and raised element by element with `./` and `.^` only (MLS 10.6)
+            // Arrays are divided and raised element by element with `./` and `.^` only (MLS 10.6).
             B::Div => self.instance.evaluator().wrong_type("a single number as divisor", &b, span),
             B::Pow if !b.dims().is_empty() => {
                 self.instance.evaluator().wrong_type("a single number as exponent", &b, span)
@@ -76,6 +96,12 @@ impl<'a> Operators<'_, 'a, '_> {
         }
     }
 
+    /// Applies an operator to two Strings: `+` joins them, relations compare them.
+    ///
+    /// Joining works for Strings with symbolic values in them. Comparing needs both to be known, else a message is
+    /// reported.
+    ///
+    /// `x` and `y` are the pieces of both Strings. Comparison follows the order of the characters (MLS 3.5).
     pub(in crate::instance) fn texts(
         &mut self,
         op: BinaryOp,
@@ -102,6 +128,8 @@ impl<'a> Operators<'_, 'a, '_> {
         Some(ModelicaValue::Scalar(self.instance.exprs.boolean(truth), ScalarType::Boolean))
     }
 
+    /// Reports that the operands do not fit, and returns `None`.
+    /// The code is that of a type error if the shapes agree, else that of a size error.
     pub(in crate::instance) fn sizes_differ<T>(
         &mut self,
         a: &ModelicaValue,
@@ -113,6 +141,8 @@ impl<'a> Operators<'_, 'a, '_> {
         self.instance.fail(code, &message, span)
     }
 
+    /// Checks that a value consists of numbers. Empty arrays pass, because their element type is not known.
+    /// `None` after a message.
     pub(in crate::instance) fn numeric(&mut self, v: &ModelicaValue, span: Span) -> Option<()> {
         match v.element_type() {
             Some(ScalarType::Real | ScalarType::Integer) => Some(()),
@@ -121,6 +151,10 @@ impl<'a> Operators<'_, 'a, '_> {
         }
     }
 
+    /// `+` and `-`: both operands must have the same shape. `.+` and `.-` also combine a scalar with an array.
+    /// `op` is one of these four. `None` after a message.
+    ///
+    /// The result has the wider type of both. Integers and Reals mix, Booleans are refused.
     pub(in crate::instance) fn elementwise(
         &mut self,
         op: BinaryOp,
@@ -138,7 +172,13 @@ impl<'a> Operators<'_, 'a, '_> {
         zipped.or_else(|| self.sizes_differ(a, b, span))
     }
 
-    /// Scalar with array or equal shapes, element by element.
+    /// Combines a scalar with each element of an array, or two values of equal shape element by element.
+    ///
+    /// The result is Real if one operand is, and always for division and powers. `None` after a message.
+    ///
+    /// - Scalar and array: the scalar is combined with each element, on the side on which it stands.
+    /// - Equal shapes: corresponding elements are combined.
+    /// - Everything else is reported.
     pub(in crate::instance) fn broadcast(
         &mut self,
         op: BinaryOp,
@@ -165,6 +205,17 @@ impl<'a> Operators<'_, 'a, '_> {
         Some(if real { result.with_type(ScalarType::Real) } else { result })
     }
 
+    /// `a * b`: with a scalar element by element, otherwise a product of vectors and matrices (MLS 10.6).
+    ///
+    /// A vector on the left counts as a row, on the right as a column. Two vectors give a scalar.
+    /// `None` after a message, if the inner sizes differ or an array has more than two dimensions.
+    ///
+    /// The sizes for `a * b` are:
+    /// - `[n, m] * [m, k]` gives `[n, k]`, `[n, m] * [m]` gives `[n]`,
+    /// - `[n] * [n, k]` gives `[k]`, `[n] * [n]` gives a scalar.
+    ///
+    /// The type is Real if one operand is.
+    /// Both operands must consist of numbers.
     pub(in crate::instance) fn product(
         &mut self,
         a: &ModelicaValue,
@@ -196,6 +247,7 @@ impl<'a> Operators<'_, 'a, '_> {
                 elements.push(ModelicaValue::Scalar(sum, ty));
             }
         }
+        // The dimensions that were added to vectors are removed again.
         let dims: Vec<usize> = match (da.len(), db.len()) {
             (2, 2) => vec![rows, columns],
             (2, 1) => vec![rows],
@@ -205,6 +257,9 @@ impl<'a> Operators<'_, 'a, '_> {
         Some(ModelicaValue::array(dims, elements))
     }
 
+    /// `A ^ n` for a square matrix and a known whole number `n` from 0 to 100 (MLS 10.6).
+    /// `None` after a message.
+    /// An exponent of 0 gives the identity matrix.
     pub(in crate::instance) fn matrix_power(
         &mut self,
         a: &ModelicaValue,
@@ -217,17 +272,27 @@ impl<'a> Operators<'_, 'a, '_> {
             return self.sizes_differ(a, b, span);
         }
         let mut result = self.identity(r);
+        // Repeated multiplication: exponents are small, and the expression pool shares equal products.
         for _ in 0..n as usize {
             result = self.product(&result, a, span)?;
         }
         Some(result)
     }
 
+    /// The identity matrix of size `n` by `n`, with Integer entries.
     pub(in crate::instance) fn identity(&mut self, n: usize) -> ModelicaValue {
         let elements = (0..n * n).map(|i| if i % (n + 1) == 0 { Exprs::ONE } else { Exprs::ZERO });
         ModelicaValue::array(vec![n, n], elements.map(|e| ModelicaValue::Scalar(e, ScalarType::Integer)).collect())
     }
 
+    /// Compares two scalars.
+    ///
+    /// In a model a relation between continuous Reals raises an event when it changes (MLS 8.5).
+    /// It does not inside `noEvent`, in functions, or if both sides change at events only.
+    /// `==` and `<>` between continuous Reals are refused outside of functions (MLS 3.5).
+    ///
+    /// `None` after a message, if the operands are no scalars of comparable types.
+    /// The result is a Boolean expression.
     pub(in crate::instance) fn relation(
         &mut self,
         op: BinaryOp,
@@ -265,6 +330,8 @@ impl<'a> Operators<'_, 'a, '_> {
     }
 }
 
+/// The scalar function behind an arithmetic operator. Every operator that is not listed is a product.
+/// The caller has checked that the operator is arithmetic.
 pub(in crate::instance) fn scalar_op(op: BinaryOp) -> BinaryFunction {
     match op {
         BinaryOp::Add | BinaryOp::ElementAdd => BinaryFunction::Add,

@@ -1,4 +1,8 @@
-//! Operator records: operators and constructors that a record class gives its values (MLS 14).
+//! Operators and constructors that operator records define (MLS 14).
+//!
+//! [`Operators`] asks here first for each operator. The functions in `operator '+'` of the record class are searched
+//! for one whose inputs fit the operands. If none fits, one operand is converted by a constructor, and at last the
+//! operator is applied element by element.
 
 use crate::instance::call::{Callee, FormalParameter};
 use crate::instance::calls::binding::is_input;
@@ -12,7 +16,9 @@ use bramah_syntax::ast::{BinaryOp, CausalityPrefix, ClassKind, UnaryOp};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
-/// The name of the operator element behind an operator.
+/// The name of the operator in the record class, as `'+'` for `a + b` and `a .+ b`.
+///
+/// Elementwise operators have the function of the plain one: they are applied to each element.
 fn name_of(op: BinaryOp) -> Option<&'static str> {
     use BinaryOp::{Add, And, Div, ElementAdd, ElementDiv, ElementMul, ElementPow, ElementSub};
     use BinaryOp::{Eq, Ge, Gt, Le, Lt, Mul, Ne, Or, Pow, Sub};
@@ -34,18 +40,21 @@ fn name_of(op: BinaryOp) -> Option<&'static str> {
 }
 
 impl<'a> Operators<'_, 'a, '_> {
-    /// The number of a class of operator records; `None` for other classes.
+    /// The number of the class of an operator record, which its values carry. `None` for other classes.
     pub(in crate::instance) fn operator_class(&mut self, class: &ClassRef<'a>) -> Option<u32> {
         let template = self.instance.names().template(class.class, class.parent);
         self.operator_class_of(&template)
     }
 
-    /// The same by what the class holds.
+    /// Like [`Self::operator_class`], from the template of the class.
+    /// Types that extend the record count as the record itself, so that values of both can be combined.
     pub(in crate::instance) fn operator_class_of(&mut self, template: &Template<'a>) -> Option<u32> {
-        // `record C = Complex(...)` and `connector C = input Complex` are `Complex`, and plain records pay nothing
+        // `record C = Complex(...)` and `connector C = input Complex` count as `Complex`.
+        // Other kinds end here at once, so that plain records cost no search.
         if !matches!(template.kind, ClassKind::Record { operator: true } | ClassKind::Connector { .. }) {
             return None;
         }
+        // Bases follow the classes that extend them, so the last one is the record that declares the operators.
         let base = template.bases.last().filter(|b| matches!(b.ast.kind, ClassKind::Record { operator: true }))?;
         let (own, parent) = (base.class, base.parent);
         let known = self.instance.classes.operator_records.iter().position(|c| c.class == own);
@@ -56,7 +65,7 @@ impl<'a> Operators<'_, 'a, '_> {
         u32::try_from(at).ok()
     }
 
-    /// The class of an operator record, or of the elements of an array of them.
+    /// The class number of an operator record, or of the elements of an array of them. `None` for other values.
     fn record_class(value: &ModelicaValue) -> Option<u32> {
         match value {
             ModelicaValue::Record(record) => record.class,
@@ -65,7 +74,9 @@ impl<'a> Operators<'_, 'a, '_> {
         }
     }
 
-    /// A binary operator on operator records; `None` where neither side is one.
+    /// Applies a binary operator if one side is an operator record.
+    /// The outer `None` means that neither side is one, the inner one that a message was reported.
+    /// A function of one of both classes is enough: `2 * z` finds the operator of `z`.
     pub(in crate::instance) fn overloaded_binary(
         &mut self,
         op: BinaryOp,
@@ -80,6 +91,15 @@ impl<'a> Operators<'_, 'a, '_> {
         Some(self.apply_binary(op, a, b, &classes, span))
     }
 
+    /// Chooses and calls the function for a binary operator (MLS 14.5).
+    ///
+    /// `classes` are the classes of the operands that are operator records. `None` after a message.
+    ///
+    /// 1. Functions of both classes whose inputs fit the operands as they are. More than one is reported as ambiguous.
+    /// 2. Functions whose inputs fit after one operand was converted by a constructor.
+    /// 3. The operator applied to corresponding elements of arrays.
+    ///
+    /// `op` is the operator; elementwise operators use the functions of the plain ones.
     fn apply_binary(
         &mut self,
         op: BinaryOp,
@@ -90,6 +110,7 @@ impl<'a> Operators<'_, 'a, '_> {
     ) -> Option<ModelicaValue> {
         let name = name_of(op)?;
         let mut functions = Vec::new();
+        // Both operands may have the same class: each function is a candidate once.
         for &class in classes {
             for f in self.operators(class, name) {
                 if !functions.iter().any(|g: &Callee<'a>| g.name == f.name) {
@@ -104,7 +125,7 @@ impl<'a> Operators<'_, 'a, '_> {
         if let Some(&f) = fitting.first() {
             return self.instance.calls().call_function(&functions[f], vec![a.clone(), b.clone()], Vec::new(), span);
         }
-        // one side is made a record of the other's class
+        // No function fits: convert one operand to the class of the other one, first the left one.
         for &class in classes {
             for (x, y) in [
                 (self.converted_to(a, class, span), Some(b.clone())),
@@ -119,10 +140,13 @@ impl<'a> Operators<'_, 'a, '_> {
         self.by_elements(op, a, b, span)
     }
 
-    /// Element by element: arrays of one size, or an array and a single value (MLS 14.5).
+    /// Applies an operator element by element: to arrays of one size, or to an array and a single value (MLS 14.5).
+    /// `None` after a message. The product of two arrays is left out here.
+    /// The operator is chosen for each pair of elements again, which matters only if their classes differ.
     fn by_elements(&mut self, op: BinaryOp, a: &ModelicaValue, b: &ModelicaValue, span: Span) -> Option<ModelicaValue> {
         let (da, db) = (a.dims().to_vec(), b.dims().to_vec());
         let plain = matches!(op, BinaryOp::Add | BinaryOp::Sub | BinaryOp::Eq | BinaryOp::Ne);
+        // `+`, `-` and comparisons need equal shapes; the others may combine an array with a scalar.
         let fits = !(da.is_empty() && db.is_empty()) && (da == db || !plain && (da.is_empty() || db.is_empty()));
         let matrices = op == BinaryOp::Mul && !da.is_empty() && !db.is_empty();
         if !fits || matrices {
@@ -140,7 +164,12 @@ impl<'a> Operators<'_, 'a, '_> {
         Some(ModelicaValue::array(dims, elements))
     }
 
-    /// A unary operator on an operator record; `None` where it is none.
+    /// Applies a unary operator to an operator record, or to each element of an array of them.
+    /// The outer `None` means that the value is no operator record, the inner one that a message was reported.
+    ///
+    /// `+` gives the value itself. For `-` and `not` exactly one function must fit.
+    /// The function `'-'` with one input is the unary minus.
+    /// An array is treated element by element, so `-z` of a vector of records is a vector.
     pub(in crate::instance) fn overloaded_unary(
         &mut self,
         op: UnaryOp,
@@ -169,7 +198,18 @@ impl<'a> Operators<'_, 'a, '_> {
         })
     }
 
-    /// The constructors of an operator record by their arguments; `None` where it has none of its own.
+    /// Calls the constructor of an operator record that fits the arguments.
+    ///
+    /// `None` if the record has no own constructors or none fits; the default constructor is used then.
+    /// The inner `None` means that a message was reported.
+    ///
+    /// Constructors with more than one output are reported.
+    /// Several constructors that fit are reported as ambiguous.
+    ///
+    /// ```text
+    /// Complex(1, 2)    // the constructor function of the operator record Complex
+    /// ```
+    /// The type of each argument must be that of its input, with Integers for Reals.
     pub(in crate::instance) fn overloaded_constructor(
         &mut self,
         class: &ClassRef<'a>,
@@ -204,6 +244,7 @@ impl<'a> Operators<'_, 'a, '_> {
         })
     }
 
+    /// Reports that several functions fit the operands, and returns `None`.
     fn ambiguous(&mut self, name: &str, span: Span) -> Option<ModelicaValue> {
         let d = Diagnostic::new(Code::BadCall, format!("more than one function of {name} takes these arguments"));
         self.instance.report(
@@ -212,7 +253,14 @@ impl<'a> Operators<'_, 'a, '_> {
         None
     }
 
-    /// The functions behind an operator of a record class: the operator itself, or those it holds.
+    /// The functions behind an operator of a record class: the operator itself, or all functions in it.
+    ///
+    /// ```text
+    /// operator record Complex
+    ///   operator function '+' ... end '+';          // one function
+    ///   operator '-' function negate ...; function subtract ...; end '-';   // several
+    /// end Complex;
+    /// ```
     fn operators(&mut self, class: u32, name: &str) -> Vec<Callee<'a>> {
         let record = LookupResult::Class(self.instance.classes.operator_records[class as usize].clone());
         let Some(found @ LookupResult::Class(_)) = self.instance.names().member(&record, Symbol::new(name)) else {
@@ -233,6 +281,7 @@ impl<'a> Operators<'_, 'a, '_> {
         functions
     }
 
+    /// A function class, ready to be called.
     fn callee(&mut self, class: &ClassRef<'a>) -> Callee<'a> {
         let template = self.instance.names().template(class.class, class.parent);
         Callee {
@@ -242,11 +291,16 @@ impl<'a> Operators<'_, 'a, '_> {
         }
     }
 
-    /// Which functions take exactly these arguments.
+    /// The indices of the functions whose inputs fit these positional arguments.
     fn fitting(&mut self, functions: &[Callee<'a>], args: &[ModelicaValue]) -> Vec<usize> {
         (0..functions.len()).filter(|&k| self.takes(&functions[k], args, &[])).collect()
     }
 
+    /// Whether a function can be called with these arguments: all fit, and each other input has a default.
+    ///
+    /// No message is reported: the caller tries several functions.
+    /// A named argument must name an input that no positional one has taken.
+    /// Sizes of arrays are not compared, only the number of dimensions.
     fn takes(
         &mut self,
         function: &Callee<'a>,
@@ -261,6 +315,7 @@ impl<'a> Operators<'_, 'a, '_> {
         for (k, f) in inputs.iter().enumerate() {
             let given = args.get(k).or_else(|| named.iter().find(|(n, _)| n.name == f.name).map(|(_, v)| v));
             let fits = match given {
+                // An input without an argument must have a default.
                 Some(value) => self.fits_input(f, value),
                 None => self.instance.names().reached(f.view.scope, f.index).binding.is_some(),
             };
@@ -271,6 +326,8 @@ impl<'a> Operators<'_, 'a, '_> {
         true
     }
 
+    /// Whether an argument fits an input: same number of dimensions, same type. Integers fit Reals.
+    /// For an input of an operator record type the value must have the same class. Other records never fit.
     fn fits_input(&mut self, f: &FormalParameter<'a>, value: &ModelicaValue) -> bool {
         if f.component.subscripts.len() != value.dims().len() {
             return false;
@@ -289,7 +346,8 @@ impl<'a> Operators<'_, 'a, '_> {
         }
     }
 
-    /// A value as a record of a class, by the constructor that takes it alone.
+    /// A scalar value as a record of a class, by a constructor that takes it as its only argument (MLS 14.5).
+    /// `None` if there is not exactly one such constructor, or the value is a record or an array already.
     fn converted_to(&mut self, value: &ModelicaValue, class: u32, span: Span) -> Option<ModelicaValue> {
         if Self::record_class(value).is_some() || !value.dims().is_empty() {
             return None;
@@ -302,6 +360,8 @@ impl<'a> Operators<'_, 'a, '_> {
     }
 }
 
+/// Whether a value fits a predefined type. An Integer fits a Real.
+/// An empty array has no element and fits nothing.
 fn fits_builtin(wanted: BuiltinType, value: Option<&ModelicaValue>) -> bool {
     match (wanted, value) {
         (BuiltinType::Real, Some(ModelicaValue::Scalar(_, ScalarType::Real | ScalarType::Integer))) => true,

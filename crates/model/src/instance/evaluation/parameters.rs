@@ -1,4 +1,8 @@
-//! Values of constants and parameters, and of attributes, where they must be known; values given from outside.
+//! Values of constants and parameters, and of attributes, where they must be known when the model is built.
+//!
+//! The evaluator asks for them in the mode `constant`, `flat` asks for attributes and binding equations.
+//! Each parameter asked for becomes structural: its value is built into the flat model.
+//! Values from outside are handled here as well: they may have units, as in `--set p=200bar`.
 
 use crate::instance::building::components::says;
 use crate::instance::building::given::QUANTITY;
@@ -14,12 +18,18 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 
 impl<'a> ParameterValues<'_, 'a, '_> {
-    /// The value of a constant or parameter.
+    /// The value of constant or parameter `i`, an index into `variables`. `None` after a message.
+    ///
+    /// The variable becomes structural, and its value is kept. `span` is where the value is needed.
+    ///
+    /// The value is found once and kept. While it is being found the variable is `busy`.
+    /// A variable that depends on itself is reported with both places.
     pub(in crate::instance) fn known_value(&mut self, i: u32, span: Span) -> Option<ModelicaValue> {
         let data = &mut self.instance.variables[i as usize];
         if let Some(known) = &data.constant {
             return known.clone().ok();
         }
+        // Meeting a variable that is being evaluated means that its binding equation leads back to it.
         if data.busy {
             let (name, declared) = (data.name.clone(), data.span);
             self.instance.report(
@@ -35,14 +45,21 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         let value = self.find_known(i, span);
         let data = &mut self.instance.variables[i as usize];
         data.busy = false;
+        // A failure is kept too, so that its message appears once.
         data.constant = Some(value.clone().ok_or(()));
         value
     }
 
+    /// Evaluates the binding equation of a parameter, or its start value if it has none (MLS 4.5).
+    /// Reports a parameter that has neither. `None` after a message.
+    ///
+    /// The value is checked against the type of the variable.
+    /// Parameters without a value are reported with the place where the value is needed.
     pub(in crate::instance) fn find_known(&mut self, i: u32, span: Span) -> Option<ModelicaValue> {
         let data = &self.instance.variables[i as usize];
         let (name, declared, ty) = (data.name.clone(), data.span, data.ty);
         let start = data.attributes.iter().find(|(n, _)| *n == "start").map(|(_, b)| b.clone());
+        // A parameter without a binding equation takes its start value (MLS 8.6).
         match data.binding.clone().or(start) {
             Some(b) => {
                 let value = self.bound(i, &b, true)?;
@@ -64,7 +81,14 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         }
     }
 
-    /// The value bound to a variable; a quantity given from outside is converted to the variable's unit.
+    /// Evaluates what is bound to variable `i`: its binding equation or an attribute.
+    ///
+    /// Checks that Strings and external objects get values of their kind. `coerce` checks the numeric types.
+    /// A quantity given from outside is converted to the unit of the variable. `None` after a message.
+    ///
+    /// `constant` asks for parameters by value. With it false the result may contain parameters as symbols.
+    /// A number in quotes gets a hint, since units are written that way by mistake.
+    /// `b` is the expression with the place of its names, `i` an index into `variables`.
     pub fn bound(&mut self, i: u32, b: &Binding<'a>, constant: bool) -> Option<ModelicaValue> {
         if Some(b.expr.span.file) == self.instance.eval.override_file
             && let Some(v) = self.outside_value(i, b)
@@ -103,8 +127,11 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         }
     }
 
-    /// Values from outside may be quantities with units, literals of the variable's own enumeration, and texts without
-    /// quotes.
+    /// The value of a binding from outside in one of the forms that Modelica does not have.
+    ///
+    /// These are quantities with units, literals of the variable's own enumeration without its name, and Strings
+    /// without quotes. The outer `None` means that the text is an ordinary expression, the inner one that a message was
+    /// reported.
     pub(in crate::instance) fn outside_value(&mut self, i: u32, b: &Binding<'a>) -> Option<Option<ModelicaValue>> {
         let data = &self.instance.variables[i as usize];
         if data.string && !matches!(b.expr.kind, ExprKind::String(_)) {
@@ -133,12 +160,19 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         }
     }
 
+    /// A quantity in `unit` as a number in the unit of variable `i`. `None` after a message.
+    ///
+    /// Both units must have the same dimension. If the variable has no unit, the quantity is refused.
+    /// If it is not clear whether the variable is a temperature or a difference, a message asks for the variable's own
+    /// unit.
+    /// `x` is the number and `unit` the unit as given, as in `200 bar`.
     pub(in crate::instance) fn converted(&mut self, i: u32, x: f64, unit: &str) -> Option<f64> {
         let name = self.instance.variables[i as usize].name.clone();
         let own = self.text_attribute(i, "unit").unwrap_or_default();
         let parsed =
             (bramah_expr::units::MeasurementUnit::parse(unit), bramah_expr::units::MeasurementUnit::parse(&own));
         let converted = match parsed {
+            // Units with an offset, as degrees Celsius: a temperature and a temperature difference convert differently.
             (Ok(from), Ok(to)) if from.dimension == to.dimension && from.offset != to.offset => {
                 match self.is_difference(i) {
                     Some(difference) => from.meant(difference).convert(x, &to.meant(difference)),
@@ -172,8 +206,11 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         converted
     }
 
-    /// Whether a variable in a unit of temperature is a difference, by the annotation `absoluteValue` of its type (MLS
-    /// 18.9), its unit for people or its quantity; `None` where none of them tells.
+    /// Whether a variable in a unit of temperature is a temperature difference.
+    ///
+    /// The annotation `absoluteValue` of its type decides (MLS 18.9), then "Difference" in its quantity or in the name
+    /// of a type. A unit with an offset, or a quantity that ends in "Temperature", makes it an absolute temperature.
+    /// `None` if none of these applies.
     pub fn is_difference(&mut self, i: u32) -> Option<bool> {
         let types = self.types_of(i);
         let said = types.iter().find_map(|t| says(t.annotation.as_ref()?, "absoluteValue"));
@@ -193,10 +230,13 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         (from_a_zero || quantity.ends_with("Temperature")).then_some(false)
     }
 
-    /// The declared type of a variable and what it extends, outermost first; nothing for a built-in one.
+    /// The declared type of a variable followed by the types it extends. Empty for predefined types.
+    /// The list begins with the class itself. It is used to read annotations and names along the chain of types.
+    /// A component of a record or array is found by its own name.
     fn types_of(&mut self, i: u32) -> Vec<&'a ast::Class> {
         let data = &self.instance.variables[i as usize];
         let (scope, last) = (data.scope, data.name.rsplit('.').next().unwrap_or(""));
+        // The variable has no reference to its declaration: the last part of its name, without subscripts, finds it.
         let name = Symbol::new(last.split('[').next().unwrap_or(""));
         let template = self.instance.scope(scope).template.clone();
         let Some(element) = template.by_name.get(&name).map(|&e| &template.elements[e as usize]) else {
@@ -211,15 +251,19 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         }
     }
 
-    /// An attribute that is a text, such as `unit`.
+    /// The value of a String attribute such as `unit`. `None` if it is not set, or after a message.
+    /// Also `displayUnit` and `quantity`. A value that is no String is reported once for each place.
+    /// A unit may be given by a parameter; then it is evaluated by value.
     pub fn text_attribute(&mut self, i: u32, attribute: &str) -> Option<String> {
         let found = self.instance.variables[i as usize].attributes.iter().find(|(n, _)| *n == attribute);
         let b = found.map(|(_, b)| b.clone())?;
+        // Almost all units are plain literals: these need no evaluation.
         if let (ExprKind::String(s), true) = (&b.expr.kind, b.access.is_empty()) {
             return Some(s.to_string());
         }
         let value = self.instance.evaluator().binding_value(&b, true)?;
         let text = value.as_text(&self.instance.exprs);
+        // The elements of an array share the modifier, and one message is enough.
         let reported = |d: &Diagnostic| d.labels.first().is_some_and(|l| l.span == b.expr.span);
         if text.is_none() && !self.instance.diagnostics.iter().any(reported) {
             let name = self.instance.variables[i as usize].name.clone();
@@ -230,14 +274,16 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         text
     }
 
-    /// An attribute that must be known while the model is built, such as `fixed`.
+    /// The value of an attribute that must be known when the model is built, as `fixed` or `stateSelect`.
+    /// Booleans are 0 and 1, enumeration values their numbers. `None` after a message.
     pub fn known_attribute(&mut self, i: u32, attribute: Symbol, b: &Binding<'a>, ty: ScalarType) -> Option<f64> {
         let value = self.instance.evaluator().binding_value(b, true)?;
         let name = format!("{}.{attribute}", self.instance.variables[i as usize].name);
         self.coerce(value, ty, &name, b.expr.span)?.as_number(&self.instance.exprs)
     }
 
-    /// Texts have no place in the flat model: those of the model's own parameters are looked at here, read or not.
+    /// Evaluates the String parameters of the model that nobody has read.
+    /// Strings are not in the flat model, so errors in them would otherwise pass unnoticed.
     pub fn check_texts(&mut self) {
         for i in 0..u32::try_from(self.instance.variables.len()).expect("limited above") {
             let data = &self.instance.variables[i as usize];
@@ -249,6 +295,7 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         }
     }
 
+    /// The name of a type with its article, for messages: "a Real", "an enumeration `Color`".
     pub(in crate::instance) fn type_words(&self, ty: ScalarType) -> String {
         match ty {
             ScalarType::Enumeration(i) => {
@@ -258,7 +305,12 @@ impl<'a> ParameterValues<'_, 'a, '_> {
         }
     }
 
-    /// Checks a value against the type of the variable that takes it.
+    /// Checks a value against the type of the scalar variable that takes it, and makes Integers Reals where needed.
+    /// `None` after a message. Strings and external objects pass; `bound` has checked them.
+    ///
+    /// `name` is the name of the variable for messages. The value must be a single one: arrays and records are
+    /// reported.
+    /// Integers fit Reals, every other difference of types is an error (MLS 10.6.13).
     pub fn coerce(&mut self, value: ModelicaValue, ty: ScalarType, name: &str, span: Span) -> Option<ModelicaValue> {
         match &value {
             ModelicaValue::Text(_) | ModelicaValue::Object(_) => Some(value),
@@ -288,7 +340,8 @@ impl<'a> ParameterValues<'_, 'a, '_> {
     }
 }
 
-/// How a value of one type is made one of another.
+/// How to convert a value of one type to another, as help in messages.
+/// `from` is the type of the value, `to` that of the variable. The text completes a message about their difference.
 pub(in crate::instance) fn conversion(from: ScalarType, to: ScalarType) -> &'static str {
     match (from, to) {
         (ScalarType::Real, ScalarType::Integer) => {
@@ -306,6 +359,7 @@ pub(in crate::instance) fn conversion(from: ScalarType, to: ScalarType) -> &'sta
     }
 }
 
+/// A type with its article, for messages. Enumerations are not named.
 pub(in crate::instance) fn type_name(ty: ScalarType) -> &'static str {
     match ty {
         ScalarType::Real => "a Real",

@@ -1,4 +1,6 @@
-//! Ports and components that references in connections name.
+//! Ports and components that connections and operators such as `inStream(a.b.c)` name.
+//!
+//! `flat` asks for the components themselves here, not for their values.
 
 use crate::instance::evaluation::references::{NodeSelection, ReferenceTarget};
 use crate::instance::lookup::LookupResult;
@@ -8,8 +10,14 @@ use bramah_syntax::diag::Code;
 use bramah_syntax::symbol::Symbol;
 
 impl<'a> Evaluator<'_, 'a, '_> {
-    /// The ports a reference names, starting from an element; `Some(None)` if a conditional component on the way is
-    /// absent, for then the connection vanishes.
+    /// The ports that a reference in a `connect` equation names, beginning with element `index` of `scope`.
+    ///
+    /// `None` after a message. `Some(None)` if a conditional component on the way is absent: the connection is then
+    /// removed (MLS 4.4.5).
+    ///
+    /// `view` is the place of the equation, where names in subscripts are looked up.
+    /// A subscript of a port must be known when the model is built; a changing one is an error.
+    /// The ports are in row-major order.
     pub fn port_selection(
         &mut self,
         r: &'a ComponentReference,
@@ -18,6 +26,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         view: LookupContext,
     ) -> Option<Option<NodeSelection>> {
         let Some(node) = self.instance.builder().component(scope, index) else {
+            // An absent component and one that could not be built look alike except for this state.
             let absent = matches!(self.instance.scope(scope).elements[index as usize], ElementState::Absent);
             return absent.then_some(None);
         };
@@ -48,7 +57,9 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(Some(at))
     }
 
-    /// The one component that a reference names.
+    /// The one component that a reference names. `None`, without a message, if it names none or several.
+    /// It serves functions such as `cardinality` and `Connections.isRoot`, which take one connector.
+    /// Subscripts must be known and select one element.
     pub(in crate::instance) fn named_node(&mut self, r: &'a ComponentReference, view: LookupContext) -> Option<NodeId> {
         let from = if r.global { crate::instance::ROOT } else { view };
         let LookupResult::Component(scope, index) = self.instance.names().lookup(from, r.parts[0].name.name)? else {
@@ -70,6 +81,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(node)
     }
 
+    /// Whether an element of this name is absent in one of the selected components.
     pub(in crate::instance) fn any_absent(&mut self, at: &NodeSelection, name: Symbol) -> bool {
         at.nodes.iter().any(|&n| {
             let InstanceNode::Object(s) = *self.instance.node(n) else { return false };

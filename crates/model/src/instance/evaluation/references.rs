@@ -1,4 +1,8 @@
-//! Component references: `a.b[i].c` to the variables it means.
+//! Component references: from `a.b[i].c` to the components that they name, and to their values.
+//!
+//! A reference begins with a local, a component, a package or an enumeration; lookup decides.
+//! [`NodeSelection`] is the state while the parts are followed: all components that the parts so far name.
+//! If a subscript is known only during the run, evaluation goes on with values instead of components.
 
 use crate::instance::errors::{list_names, nearest, short};
 use crate::instance::evaluation::indices::SubscriptValue;
@@ -12,21 +16,31 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
-/// Components picked by a reference: with dimensions when arrays are passed through.
+/// The components that the parts of a reference name so far.
+///
+/// `tank[2:3].port.p` names two components, with `dims` `[2]`. The sizes of all arrays on the way add up.
 #[derive(Clone, Debug)]
 pub struct NodeSelection {
-    /// Sizes of the arrays passed through.
+    /// Sizes of all arrays passed through that no scalar subscript has removed.
     pub dims: Vec<usize>,
     /// How many of the sizes, counted from the last, belong to the component named last.
+    /// Only these may still take subscripts. It is 0 after the subscripts.
     pub own: usize,
-    /// What counts along these.
+    /// The index types of these last dimensions: Integer, Boolean or an enumeration.
     pub by: Rc<[ScalarType]>,
-    /// The components, row-major; shared, for a reference to one element of a long array passes through the whole.
+    /// The components in row-major order.
+    /// Shared, because a reference to one element of a long array starts with all of its elements.
     pub nodes: Rc<[NodeId]>,
 }
 
 impl<'a> Evaluator<'_, 'a, '_> {
-    /// The value of a reference.
+    /// The value of a reference. `None` after a message.
+    ///
+    /// Locals come first: loop variables, and in functions inputs, outputs and protected variables.
+    /// Then come `time` and what lookup finds.
+    ///
+    /// - A component goes on through its parts, see [`Self::select_value`].
+    /// - A class leads to a constant, an enumeration literal, or a function as a value.
     pub(in crate::instance) fn reference(
         &mut self,
         r: &'a ComponentReference,
@@ -35,6 +49,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
         let first = &r.parts[0];
         if !r.global {
             if let Some(i) = self.instance.local(first.name.name)
+                // An algorithm section holds the variables that it assigns as locals. Others of the same component are
+                // not in it.
                 && !(self.instance.eval.section.contains(&i) && lies_beside(&self.instance.eval.locals[i].1, r))
             {
                 let value = self.instance.eval.locals[i].1.clone();
@@ -54,6 +70,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
+    /// The variable `time`. `None` after a message in the mode `constant`, because it changes during the run.
     fn time(&mut self, span: Span) -> Option<ModelicaValue> {
         if self.instance.eval.mode.constant {
             return self.instance.fail(Code::NotConstant, "`time` is not known before the run", span);
@@ -61,7 +78,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(ModelicaValue::Scalar(self.instance.exprs.time(), ScalarType::Real))
     }
 
-    /// Fields and indices of a local.
+    /// Applies the subscripts of the first part, and then the other parts, to the value of a local.
+    /// `x[2].re` selects an element and then a field. `None` after a message.
+    ///
+    /// Subscripts of the variable itself are checked against the index types of its declaration.
+    /// Those of fields are not, because the type of a field is not at hand here.
     fn local_part(
         &mut self,
         mut value: ModelicaValue,
@@ -80,7 +101,10 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(value)
     }
 
-    /// What counts along the dimensions with which a local of a function, or of an algorithm section, was declared.
+    /// The index types of the dimensions with which a variable was declared: Boolean for `Real x[Boolean]`.
+    ///
+    /// It serves locals of functions and of algorithm sections, whose values do not carry index types.
+    /// Empty if the name is no component.
     pub(in crate::instance) fn counted_by(&mut self, view: LookupContext, name: Symbol) -> Vec<ScalarType> {
         let Some(LookupResult::Component(scope, index)) = self.instance.names().lookup(view, name) else {
             return Vec::new();
@@ -98,7 +122,13 @@ impl<'a> Evaluator<'_, 'a, '_> {
         declared.subscripts.iter().map(by).map(|by| by.unwrap_or(ScalarType::Integer)).collect()
     }
 
-    /// A field of a record, or of every record of an array.
+    /// A field of a record. For an array of records, the array of the fields, with the dimensions of the field last.
+    /// `None` after a message, if there is no such field.
+    ///
+    /// ```text
+    /// Complex z[2];
+    /// z.re            // the array {z[1].re, z[2].re}
+    /// ```
     pub(in crate::instance) fn field(
         &mut self,
         value: &ModelicaValue,
@@ -125,7 +155,13 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
-    /// What the first part of a reference means, or a message.
+    /// What the first part of a reference means. `None` after a message.
+    ///
+    /// `.A.b` starts at the top level, everything else at `view`.
+    /// Variables of a component around the class may not be read, only constants (MLS 5.3.1).
+    ///
+    /// Unknown names are reported with a suggestion from the names visible at `view`.
+    /// A function or a short class is seen from where it is written, see [`Self::is_variable_around`].
     fn start(&mut self, r: &ComponentReference, view: LookupContext) -> Option<LookupResult<'a>> {
         let name = r.parts[0].name;
         let found = if r.global {
@@ -154,11 +190,13 @@ impl<'a> Evaluator<'_, 'a, '_> {
         found
     }
 
-    /// Whether a component found around a class is a variable of an instance, which only constants may be (MLS 5.3.1).
+    /// Whether a component found around a class is a variable of an instance; only constants may be read from there
+    /// (MLS 5.3.1).
     ///
-    /// A function called through a component, as in `oil.density(p)`, reads what that holds; no other function is found there.
+    /// A function called through a component, as in `oil.density(p)`, may read variables of that component. Other
+    /// functions do not find variables around them.
     fn is_variable_around(&self, mut view: LookupContext, scope: ScopeId, index: u32) -> bool {
-        // the modifiers of a short class stand around it
+        // The modifiers of a short class stand outside of it, so the place in question is the one around it.
         while let Some(base) =
             self.instance.scope(view.scope).template.bases.get(view.base as usize).filter(|b| b.short)
         {
@@ -177,6 +215,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
+    /// Reports an unknown name, with the most similar of `names` as a suggestion or else a list of them.
+    /// `span` is the place of the name. Long names are shortened in the message.
     pub(in crate::instance) fn unknown_name(&mut self, name: Symbol, span: Span, names: &[Symbol]) {
         let mut d = Diagnostic::new(Code::UnknownName, format!("there is no `{}` here", short(name.as_str())))
             .at(span, "not found");
@@ -187,6 +227,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.report(d);
     }
 
+    /// The names that can be used at a place: locals, and elements of the instance. They serve suggestions in messages.
     pub(in crate::instance) fn visible_names(&self, view: LookupContext) -> Vec<Symbol> {
         let frame = self.instance.eval.frame;
         let mut names: Vec<Symbol> = self.instance.eval.locals[frame..].iter().map(|(n, _)| *n).collect();
@@ -194,12 +235,17 @@ impl<'a> Evaluator<'_, 'a, '_> {
         names
     }
 
-    /// The node of an element, with a message when it is absent.
+    /// The node of an element, built if necessary. `None` after a message: absent, or needed to build itself.
+    ///
+    /// A component that is being built and asked for again needs its own size or condition; that is reported as a
+    /// cycle.
+    /// A conditional component that is absent is reported too: only `connect` may name it (MLS 4.4.5).
     fn element_node(&mut self, scope: ScopeId, index: u32, r: &ComponentReference) -> Option<NodeId> {
         let busy = matches!(self.instance.scope(scope).elements[index as usize], ElementState::Busy);
         if let Some(node) = self.instance.builder().component(scope, index) {
             return Some(node);
         }
+        // If something failed before, the component may be missing for that reason, and a second message would mislead.
         let name = self.instance.scope(scope).template.elements[index as usize].name;
         if busy {
             self.instance.report(
@@ -216,7 +262,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         None
     }
 
-    /// A node as a selection.
+    /// The selection with which a reference begins: all elements of an array, or the one component.
     pub fn selection(&self, node: NodeId) -> NodeSelection {
         match self.instance.node(node) {
             InstanceNode::Array { dims, by, elements } => {
@@ -226,7 +272,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
-    /// Follows a reference from a component; `part` is the part that named it.
+    /// Follows a reference from a component to a value. `part` is the index of the part that named the component.
+    /// `None` after a message.
+    ///
+    /// For each part the component is looked up in all selected components, and then its subscripts are applied.
+    /// A part that names a class inside a component ends the walk: the rest is looked up in that class.
+    /// The value of a record array is an array of records.
     fn select_value(
         &mut self,
         node: NodeId,
@@ -240,6 +291,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 match self.descend(&at, p) {
                     ReferenceTarget::Nodes(next) => at = next,
                     ReferenceTarget::Class(found) => {
+                        // A class inside a component: a package constant or an enumeration literal is read through it.
                         let rest = ComponentReference { global: false, parts: r.parts[i..].to_vec(), span: r.span };
                         return self.class_tail(found, &rest, view);
                     }
@@ -249,7 +301,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             if !p.subscripts.is_empty() {
                 match self.subscript_selection(&at, p, view, r.span)? {
                     Ok(next) => at = next,
-                    // An index known at run time only: continue with values.
+                    // The subscript is known only during the run: go on with values of all elements.
                     Err(()) => return self.dynamic_selection(&at, r, i, view),
                 }
             }
@@ -257,6 +309,10 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.selection_value(&at, r.span)
     }
 
+    /// Follows a reference with values, beginning with the subscripts of part `part`.
+    ///
+    /// It is used for subscripts that change during the run. Protected elements and conditional components are not
+    /// checked here, because the values of all elements exist already.
     fn dynamic_selection(
         &mut self,
         at: &NodeSelection,
@@ -273,6 +329,13 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(value)
     }
 
+    /// Applies the subscripts of one part to a selection.
+    ///
+    /// `None` after a message. `Some(Err(()))` if a subscript is known only during the run.
+    ///
+    /// `p` is the part, whose name is used in messages, and `view` the place of its subscripts.
+    /// Dimensions of the component without a subscript are kept: `a.b[1]` with a matrix `b` selects its first row.
+    /// The caller goes on with values if a subscript is symbolic.
     pub(in crate::instance) fn subscript_selection(
         &mut self,
         at: &NodeSelection,
@@ -288,7 +351,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             };
             return self.instance.fail(Code::BadIndex, &message, span);
         }
-        // Indices belong to the component just named: the last dimensions came with it.
+        // Subscripts belong to the component named last, whose dimensions are the last ones; all others are kept.
         let own = at.dims.len() - at.own;
         let mut picks: Vec<SubscriptValue> =
             at.dims[..own].iter().map(|&n| SubscriptValue::Many((0..n).collect())).collect();
@@ -304,7 +367,20 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(Ok(NodeSelection { dims, own: 0, by: Rc::from([]), nodes }))
     }
 
-    /// One step down: a component or class inside the selected components.
+    /// Goes one part further: to a component or a class inside each of the selected components.
+    ///
+    /// The sizes of the component found are appended. They must be equal in all selected components.
+    ///
+    /// ```text
+    /// tank[3]            // three components
+    /// tank.port          // three ports, dims [3]
+    /// tank.port.q[2]     // dims [3]: element 2 of q in each port
+    /// ```
+    ///
+    /// Failures, each with a message: a variable has no elements, no such element, an absent component, different
+    /// sizes.
+    /// A protected element is reported, and the walk goes on.
+    /// `at` is the selection so far, `p` the part to follow.
     pub(in crate::instance) fn descend(&mut self, at: &NodeSelection, p: &ReferencePart) -> ReferenceTarget<'a> {
         let name = p.name.name;
         let mut nodes = Vec::new();
@@ -326,6 +402,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             if template.elements[i as usize].protected {
                 self.protected_element(scope, name, p.name.span);
             }
+            // All elements of an array have the same class, so the class in the first one stands for all.
             if matches!(template.elements[i as usize].kind, TemplateElementKind::Class(_)) {
                 let owner = LookupContext { scope, base: 0 };
                 return match self.instance.names().lookup(owner, name) {
@@ -335,6 +412,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             }
             let child = match self.instance.builder().component(scope, i) {
                 Some(c) => c,
+                // As above: no second message if something failed before.
                 None => {
                     if !self.instance.diagnostics.iter().any(Diagnostic::is_error) {
                         let whole = self.instance.scope(scope).name.clone();
@@ -367,6 +445,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
         ReferenceTarget::Nodes(NodeSelection { dims, own, by, nodes: nodes.into() })
     }
 
+    /// Reports a reference from outside to a protected element (MLS 4.1).
+    /// `scope` is the component whose class declares the element.
     fn protected_element(&mut self, scope: ScopeId, name: Symbol, span: Span) {
         let (instance, class) = (self.instance.scope(scope).name.clone(), self.instance.scope(scope).template.class);
         let class = self.instance.library.full_name(class);
@@ -379,6 +459,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
         );
     }
 
+    /// Reports that a component has no element of this name, with a suggestion or a list of its public elements.
+    /// `scope` is the component, whose class is named in the message.
     fn unknown_member(&mut self, scope: ScopeId, name: Symbol, span: Span) {
         let s = self.instance.scope(scope);
         let template = s.template.clone();
@@ -396,7 +478,15 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.report(d);
     }
 
-    /// The value of a class reference: a constant of a package, a literal of an enumeration.
+    /// The value of a reference that begins with a class: a constant of a package, a literal of an enumeration.
+    ///
+    /// A reference to a function gives a function value, for arguments that are functions (MLS 12.4.2).
+    /// `None` after a message.
+    ///
+    /// Parts are followed one after the other, and each member is checked for being reachable.
+    /// As soon as a part is a component, that is a constant of a package, the rest goes on as for components.
+    /// `r` is the reference, whose first part is `found`.
+    /// A partial package is refused, since its constants may be replaced.
     fn class_value(
         &mut self,
         mut found: LookupResult<'a>,
@@ -404,6 +494,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         view: LookupContext,
     ) -> Option<ModelicaValue> {
         for (i, part) in r.parts.iter().enumerate().skip(1) {
+            // Literals first: they are no elements of the class.
             if let Some(v) = self.literal(&found, part.name.name) {
                 return Some(v);
             }
@@ -411,6 +502,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             if let Some(inside) = &inside {
                 self.instance.names().check_member(&found, inside, part.name);
             }
+            // Constants of partial packages may not be read, because a complete package may redeclare them.
             match inside {
                 Some(LookupResult::Component(scope, index)) => {
                     if let LookupResult::Class(c) = &found
@@ -443,7 +535,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
     }
 
-    /// The rest of a reference that reached a class inside a component.
+    /// Follows the rest of a reference that reached a class inside of a component.
+    /// `r` begins with the part that named the class. `None` if the rest names nothing with a value.
+    ///
+    /// ```text
+    /// oil.Medium.density   // a constant of the package Medium inside the component oil
+    /// ```
     fn class_tail(
         &mut self,
         mut found: LookupResult<'a>,
@@ -458,6 +555,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 LookupResult::Component(scope, index) => {
                     let node = self.element_node(scope, index, r)?;
                     let at = self.selection(node);
+                    // Constants of a class are not in the flat model, so only their values can be used.
                     return self
                         .instance
                         .in_mode(|m| m.constant = true, |s| s.evaluator().selection_value(&at, r.span));
@@ -468,6 +566,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.fail(Code::WrongClassKind, "this is a class, and a value is needed here", r.span)
     }
 
+    /// A literal of an enumeration, as `Color.red`. `None` if `found` is no enumeration or has no such literal.
+    ///
+    /// ```text
+    /// type Color = enumeration(red, green);
+    /// Color c = Color.green;    // the value 2 of the type Color
+    /// ```
     fn literal(&mut self, found: &LookupResult<'a>, name: Symbol) -> Option<ModelicaValue> {
         let builtin = match found {
             LookupResult::Builtin(b) => *b,
@@ -476,9 +580,12 @@ impl<'a> Evaluator<'_, 'a, '_> {
         };
         let BuiltinType::Enumeration(i) = builtin else { return None };
         let k = self.instance.enumerations[i as usize].literals.iter().position(|l| *l == name)?;
+        // Literals are numbered from 1 (MLS 4.9.5).
         Some(ModelicaValue::Scalar(self.instance.exprs.num(k as f64 + 1.0), ScalarType::Enumeration(i)))
     }
 
+    /// Reports that a class has no member of this name, with a suggestion or a list of what it has.
+    /// For an enumeration its literals are the names to choose from, for a package also classes in files of their own.
     fn unknown_in_class(&mut self, found: &LookupResult<'a>, part: &ReferencePart) {
         let (class, mut names) = match found {
             LookupResult::Class(c) => {
@@ -496,6 +603,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             }
             _ => ("this type".into(), Vec::new()),
         };
+        // Classes in files of their own are not in the template until somebody loads them.
         if let LookupResult::Class(c) = found {
             names.extend(self.instance.library.folder_members(c.class));
         }
@@ -509,7 +617,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
         self.instance.report(d);
     }
 
-    /// The value of selected components.
+    /// The value of selected components: a single value, or an array with the sizes of the selection.
     pub(in crate::instance) fn selection_value(&mut self, at: &NodeSelection, span: Span) -> Option<ModelicaValue> {
         let values: Option<Vec<ModelicaValue>> = at.nodes.iter().map(|&n| self.node_value(n, span)).collect();
         let mut values = values?;
@@ -519,7 +627,8 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(ModelicaValue::array(at.dims.clone(), values))
     }
 
-    /// The value of a component: a variable, or a record.
+    /// The value of a component: a variable, an array, or a record. `None` after a message.
+    /// `span` is where the value is needed.
     pub fn node_value(&mut self, node: NodeId, span: Span) -> Option<ModelicaValue> {
         match self.instance.node(node) {
             InstanceNode::Var(i) => self.variable_value(*i, span),
@@ -531,6 +640,11 @@ impl<'a> Evaluator<'_, 'a, '_> {
         }
     }
 
+    /// The value of a record or connector: its fields in declaration order, without absent components.
+    /// Instances of other classes have no value; a message is reported and `None` returned.
+    ///
+    /// A value of an operator record carries the number of its class, so that operators find their functions.
+    /// Building the elements on demand may report messages of these elements.
     fn record_value(&mut self, scope: ScopeId, span: Span) -> Option<ModelicaValue> {
         let template = self.instance.scope(scope).template.clone();
         if !matches!(template.kind, ClassKind::Record { .. } | ClassKind::Connector { .. }) {
@@ -555,10 +669,17 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(ModelicaValue::Record(Rc::new(crate::instance::value::RecordValue { fields, class })))
     }
 
-    /// The value of a scalar variable: itself, or its number where values count.
+    /// The value of a scalar variable: the variable as a symbol, or its value.
+    ///
+    /// Values are used for Strings and external objects always, and for parameters in the mode `constant`.
+    /// Reading other variables in that mode is an error. `None` after a message.
+    ///
+    /// - In the mode `constant`, and for variables outside of the model, parameters and constants give their value.
+    /// - Other variables of the model give a symbol of the pool.
+    /// - In the mode `constant` those are errors, because their value depends on the run.
     fn variable_value(&mut self, i: u32, span: Span) -> Option<ModelicaValue> {
         let data = &self.instance.variables[i as usize];
-        // Constants of packages are not part of the model, so only their value can stand in it.
+        // Constants of packages have no number in the flat model, so only their value can be used.
         let by_value = data.string
             || data.object
             || (data.variability <= Variability::Parameter
@@ -578,6 +699,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             return None;
         }
         let (id, ty) = (data.id, data.ty);
+        // A variable without a number belongs to a class that is used as a package.
         if id.0 == u32::MAX {
             let (name, declared) = (data.name.clone(), data.span);
             let d = Diagnostic::new(Code::Restricted, format!("`{name}` belongs to no component"));
@@ -589,7 +711,9 @@ impl<'a> Evaluator<'_, 'a, '_> {
     }
 }
 
-/// Whether a reference names a variable of a component that is no value, of which an algorithm section assigns other ones.
+/// Whether a reference names a variable that lies beside those that an algorithm section assigns.
+///
+/// The section holds `value`: of a component that is no record, only the assigned parts. `a.y` is beside `a.x`.
 fn lies_beside(mut value: &ModelicaValue, r: &ComponentReference) -> bool {
     for part in &r.parts[1..] {
         value = value.elements().first().unwrap_or(value);
@@ -602,8 +726,12 @@ fn lies_beside(mut value: &ModelicaValue, r: &ComponentReference) -> bool {
     false
 }
 
+/// Where one part of a reference leads.
 pub(in crate::instance) enum ReferenceTarget<'a> {
+    /// To components.
     Nodes(NodeSelection),
+    /// To a class inside a component.
     Class(LookupResult<'a>),
+    /// Nowhere; a message was reported.
     Failed,
 }

@@ -1,4 +1,7 @@
-//! Doors for `flat`, which walks the equations and algorithm sections.
+//! Entry points for `flat`, which walks through the equations and algorithm sections of the component tree.
+//!
+//! `flat` enters loop variables, pushes the variables of an algorithm section as locals, runs the section, and collects
+//! the results: the locals' values, and the assertions and `when` statements on the way.
 
 use crate::instance::algorithm::{AlgorithmCall, AlgorithmWhen};
 use crate::instance::deduce::LoopBody;
@@ -13,7 +16,9 @@ use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
 impl<'a> Statements<'_, 'a, '_> {
-    /// Runs something for every value of the iterators, innermost last.
+    /// Runs `body` once for each combination of the iterators' values; the last iterator varies fastest.
+    /// The loop variables are locals meanwhile. Without a valid range nothing is run, and a message was reported.
+    /// `repeated` is what the loop repeats, for iterators without a range.
     pub fn for_each(
         &mut self,
         iterators: &'a [LoopIterator],
@@ -30,7 +35,7 @@ impl<'a> Statements<'_, 'a, '_> {
         }
     }
 
-    /// The values of a loop variable.
+    /// The values of the variable of a `for` equation, in order. `None` after a message.
     pub fn loop_values(
         &mut self,
         iterator: &'a LoopIterator,
@@ -40,22 +45,25 @@ impl<'a> Statements<'_, 'a, '_> {
         self.instance.evaluator().iterate(iterator, LoopBody::Equations(body), view)
     }
 
-    /// Enters a loop variable.
+    /// Makes a loop variable visible.
     pub fn push_local(&mut self, name: Symbol, value: ModelicaValue) {
         self.instance.eval.locals.push((name, value));
     }
 
-    /// Leaves the innermost loop variable.
+    /// Removes the innermost loop variable.
     pub fn pop_local(&mut self) {
         self.instance.eval.locals.pop();
     }
 
-    /// Switches events of relations off or on; returns what was before.
+    /// Switches events of relations off or on. Returns whether they were off before.
     pub fn set_no_event(&mut self, off: bool) -> bool {
         std::mem::replace(&mut self.instance.eval.mode.no_event, off)
     }
 
-    /// The value of an element of which an algorithm section assigns these parts; of a component that is no value only these.
+    /// The value with which an algorithm section starts for one component: `targets` are the references it assigns.
+    ///
+    /// All of them begin with the same name. A record is taken completely. A component that is no record has no value,
+    /// so only the assigned parts are collected. `None` after a message.
     pub fn assigned_value(&mut self, view: LookupContext, targets: &[&'a ComponentReference]) -> Option<ModelicaValue> {
         let first = &targets.first()?.parts[0];
         match self.instance.names().lookup(view, first.name.name) {
@@ -72,7 +80,15 @@ impl<'a> Statements<'_, 'a, '_> {
         }
     }
 
-    /// What these references, which begin below it, name of a node.
+    /// The value of a node, restricted to the parts that `targets` name if it is no record.
+    /// `targets` hold the parts of the references below the node; `named` is the part that named it, for messages.
+    ///
+    /// - A record or a variable gives its complete value.
+    /// - An array of components gives an array of what its elements give.
+    /// - Another component gives a record with only the assigned parts as fields.
+    ///
+    /// A name that does not exist is reported.
+    /// `targets` may go through the same element several times.
     fn assigned_parts(
         &mut self,
         node: NodeId,
@@ -93,11 +109,13 @@ impl<'a> Statements<'_, 'a, '_> {
         };
         let template = self.instance.scope(scope).template.clone();
         let is_value = matches!(template.kind, ClassKind::Record { .. } | ClassKind::Connector { .. });
+        // A record is assigned as one value, and so is a node that a target names itself.
         if is_value || targets.iter().any(|parts| parts.is_empty()) {
             return self.instance.evaluator().node_value(node, named.name.span);
         }
         let mut fields: Vec<(Symbol, ModelicaValue)> = Vec::new();
         for part in targets.iter().map(|parts| &parts[0]) {
+            // Several targets may go through one element: it is collected once, with all of them.
             if fields.iter().any(|(name, _)| *name == part.name.name) {
                 continue;
             }
@@ -114,7 +132,8 @@ impl<'a> Statements<'_, 'a, '_> {
         Some(ModelicaValue::Record(Rc::new(RecordValue { fields, class: None })))
     }
 
-    /// Carries out an algorithm section of the model on the `count` locals that were pushed for it.
+    /// Executes an algorithm section of the model on the last `count` locals, which stand for its variables.
+    /// `None` after a message.
     pub fn run_section(&mut self, section: &'a [Statement], view: LookupContext, count: usize) -> Option<()> {
         self.instance.eval.work = StatementBudget::allowed([MOST_SECTION_STEPS, MOST_SECTION_STEPS]);
         self.instance.eval.not_inline = false;
@@ -123,33 +142,34 @@ impl<'a> Statements<'_, 'a, '_> {
         self.instance.eval.calls.clear();
         self.instance.eval.guards.clear();
         let done = self.execute(section, view).map(|_| ());
+        // An empty range: after the section no local stands for a variable.
         self.instance.eval.section = 0..0;
         done
     }
 
-    /// Calls a function for what it asserts.
+    /// Calls a function for the sake of its assertions, and returns these.
     pub fn call_keeping_assertions(&mut self, call: &'a Expr, view: LookupContext) -> Vec<AlgorithmCall> {
         self.instance.eval.calls.clear();
         self.instance.in_mode(|m| m.keep_asserts = true, |s| s.evaluator().eval_all(call, view));
         std::mem::take(&mut self.instance.eval.calls)
     }
 
-    /// Removes the last locals and hands out their values.
+    /// Removes the last `count` locals and returns their values, in the order in which they were pushed.
     pub fn take_locals(&mut self, count: usize) -> Vec<ModelicaValue> {
         let at = self.instance.eval.locals.len() - count;
         self.instance.eval.locals.split_off(at).into_iter().map(|(_, v)| v).collect()
     }
 
-    /// What must hold besides equations, and `terminate`s, met outside `when` since the last call.
+    /// The assertions and `terminate` calls outside of `when` since the last call of this function.
     pub fn take_calls(&mut self) -> Vec<AlgorithmCall> {
         std::mem::take(&mut self.instance.eval.calls)
     }
 
-    /// The `when`s met since the last call.
+    /// The `when` statements since the last call of this function.
     pub fn take_whens(&mut self) -> Vec<AlgorithmWhen> {
         std::mem::take(&mut self.instance.eval.whens)
     }
 }
 
-/// Most statements of an algorithm section of a model.
+/// The most statements executed for one algorithm section of a model.
 pub(in crate::instance) const MOST_SECTION_STEPS: usize = 1_000_000;

@@ -1,4 +1,7 @@
-//! Sizes of expressions whose values may change.
+//! Sizes of expressions whose values may change during the run.
+//!
+//! `size(x, 1)` and the dimension `:` need sizes only. Values of variables are not known when the model is built, but
+//! sizes are, so they are derived from the form of the expression.
 
 use crate::instance::evaluation::references::ReferenceTarget;
 use crate::instance::lookup::LookupResult;
@@ -6,10 +9,15 @@ use crate::instance::{Evaluator, LookupContext};
 use bramah_syntax::ast::{Expr, ExprKind};
 
 impl<'a> Evaluator<'_, 'a, '_> {
-    /// Sizes of what a reference to components of the model selects: they are known where the values are not. `None` where
-    /// it is anything else.
+    /// The sizes of the components that a reference names. They are known even if the values are not.
+    /// `None` if the expression is no reference to components of the model, or outside the mode `constant`.
+    ///
+    /// ```text
+    /// Real x[n] = f(u);    // size(x, 1) is n, even if f(u) is not known
+    /// ```
     pub(in crate::instance) fn declared_dims(&mut self, e: &'a Expr, view: LookupContext) -> Option<Vec<usize>> {
         let ExprKind::Reference(r) = &e.kind else { return None };
+        // A local is no component: its sizes are those of its value.
         if !self.instance.eval.mode.constant || !r.global && self.instance.local(r.parts[0].name.name).is_some() {
             return None;
         }
@@ -31,11 +39,21 @@ impl<'a> Evaluator<'_, 'a, '_> {
         Some(at.dims)
     }
 
-    /// Sizes of an expression whose value may change, where its form tells them.
+    /// The sizes of an expression, as far as its form determines them. Empty for scalars.
+    /// `None` if its value must be computed to find them.
     pub(in crate::instance) fn shape(&mut self, e: &'a Expr, view: LookupContext) -> Option<Vec<usize>> {
         self.instance.in_mode(|m| m.constant = true, |s| s.evaluator().shape_inside(e, view))
     }
 
+    /// Like [`Self::shape`], already in the mode `constant`. Sizes of operands are not checked against each other here.
+    ///
+    /// - References have the sizes of what they name, literals are scalars.
+    /// - Operators follow the shapes of their operands.
+    /// - Array constructors have the number of their elements in front, matrices join the sizes of their entries.
+    /// - `if` has the shape of the first branch that is not excluded.
+    /// - `fill` and elementwise functions are known; all other calls give `None`.
+    ///
+    /// An `if` whose condition is not known takes the shape of that branch.
     pub(in crate::instance) fn shape_inside(&mut self, e: &'a Expr, view: LookupContext) -> Option<Vec<usize>> {
         use bramah_syntax::ast::BinaryOp as B;
         match &e.kind {
@@ -45,6 +63,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
             ExprKind::Unary(_, a) => self.shape_inside(a, view),
             ExprKind::Binary(op, a, b) => {
                 let (a, b) = (self.shape_inside(a, view)?, self.shape_inside(b, view)?);
+                // A scalar operand takes the shape of the other one; `*` of arrays follows linear algebra (MLS 10.6).
                 match (op, a.len(), b.len()) {
                     (_, 0, 0) | (B::Pow, ..) => Some(a),
                     (_, 0, _) => Some(b),
@@ -65,6 +84,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 for row in rows {
                     let mut width = 0;
                     let mut height = 1;
+                    // Columns add up within a row, rows add up below each other. Vectors and scalars count as columns.
                     for e in row {
                         let part = self.shape_inside(e, view)?;
                         height = part.first().copied().unwrap_or(1);
@@ -75,6 +95,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                 Some(all.to_vec())
             }
             ExprKind::If { branches, otherwise } => {
+                // The first branch that may be taken gives the shape: all branches must have the same one (MLS 3.6.5).
                 for (condition, value) in branches {
                     let (known, _) = self.instance.attempt(|i| i.evaluator().constant_boolean(condition, view));
                     if known != Some(false) {
@@ -93,6 +114,7 @@ impl<'a> Evaluator<'_, 'a, '_> {
                         });
                         Some(outer?.into_iter().chain(inner).collect())
                     }
+                    // These functions keep the shape of their argument.
                     "noEvent" | "pre" | "der" | "abs" | "sqrt" | "sin" | "cos" | "exp" => {
                         self.shape_inside(args.first()?, view)
                     }

@@ -1,4 +1,7 @@
-//! The mutable surroundings of an evaluation.
+//! The state of an evaluation: locals, the frame that limits them, and the mode.
+//!
+//! There is one [`EvaluationState`] in each instance. Evaluation changes it and restores it afterwards.
+//! [`Instance::in_mode`] and `in_frame` do that; code that changes fields directly restores them itself.
 
 use crate::instance::Instance;
 use crate::instance::value::ModelicaValue;
@@ -8,60 +11,62 @@ use bramah_syntax::diag::FileId;
 use bramah_syntax::symbol::Symbol;
 use rustc_hash::FxHashMap;
 
-/// The mutable surroundings of an evaluation.
+/// What an evaluation depends on besides the expression and its place.
 #[derive(Default)]
 pub struct EvaluationState {
-    /// Loop variables and the locals of functions, innermost last.
+    /// Loop variables, and inputs, outputs and protected variables of functions, innermost last.
     pub locals: Vec<(Symbol, ModelicaValue)>,
-    /// First local of the function being evaluated.
+    /// Index of the first local of the function that is being evaluated. Locals before it are not visible.
     pub frame: usize,
     /// How expressions are evaluated at present.
     pub mode: EvaluationMode,
-    /// Sizes that `end` means, and what counts along the dimension, innermost last.
+    /// What `end` means in the subscripts around, innermost last: the size of the dimension and its index type.
     pub ends: Vec<(usize, ScalarType)>,
-    /// Depth of function calls.
+    /// The number of function calls around the present expression.
     pub depth: usize,
-    /// Set when a function cannot be written as an expression and must become a procedure.
+    /// Set when a function cannot be evaluated to an expression. Its caller then makes a procedure of it.
     pub not_inline: bool,
-    /// An assertion fails where the run may not come: the function around it must become a procedure.
+    /// Set when an assertion fails in a branch that the run may never take.
+    /// The function then becomes a procedure, which checks the assertion when it gets there.
     pub may_fail: bool,
-    /// Statements carried out, to end what never ends.
+    /// Statements executed so far against their limit, to stop functions that never end.
     pub work: StatementBudget,
-    /// `when`s met in an algorithm section of the model.
+    /// The `when` statements of the algorithm section that is being executed.
     pub whens: Vec<crate::instance::algorithm::AlgorithmWhen>,
-    /// `assert`s and `terminate`s met there since the section, or the branch of a `when`, began.
+    /// The `assert` and `terminate` calls since the section, or the branch of its `when`, began.
     pub calls: Vec<crate::instance::algorithm::AlgorithmCall>,
-    /// Conditions of the `if`s around the present statement of such a section.
+    /// Conditions of the `if`s around the present statement or expression. All of them must hold there.
     pub guards: Vec<ExprId>,
-    /// The procedure being translated.
+    /// The procedure that is being translated.
     pub(in crate::instance) translation: crate::instance::procedure::ProcedureDraft,
-    /// The variables of the algorithm section being carried out, among the locals.
+    /// The locals that stand for variables assigned by the algorithm section of a model.
     pub section: std::ops::Range<usize>,
-    /// The text of values given from outside.
+    /// The file that holds the text of values given from outside.
     pub override_file: Option<FileId>,
-    /// These values as they were given, by the names of the variables.
+    /// Values given from outside as they were written, by the names of the variables.
     pub texts: FxHashMap<String, String>,
 }
 
-/// How expressions are evaluated; [`Instance::in_mode`] changes it for a while.
+/// How expressions are evaluated. [`Instance::in_mode`] changes it for the time of a call.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EvaluationMode {
-    /// Parameters count by their values.
+    /// Parameters are replaced by their values. Reading a variable is an error.
     pub constant: bool,
-    /// Relations make no events.
+    /// Relations raise no events, as inside `noEvent`.
     pub no_event: bool,
-    /// Inside `pre`: variables of the section mean themselves, not what the section has made of them.
+    /// Inside `pre(...)`: variables of the algorithm section mean the variables, not their values so far in the
+    /// section.
     pub before: bool,
-    /// A procedure is being translated.
+    /// A procedure is being translated: values that are not known become slots.
     pub procedure: bool,
-    /// What a procedure calls is being written out.
+    /// A function called by a procedure is being evaluated to expressions.
     pub under_procedure: bool,
-    /// Assertions of the function being carried out are kept for the run.
+    /// Assertions of the called function are kept and checked during the run.
     pub keep_asserts: bool,
 }
 
 impl Instance<'_, '_> {
-    /// Does something in another mode.
+    /// Runs `act` in a mode that `change` derives from the present one, and restores the mode afterwards.
     pub fn in_mode<T>(&mut self, change: impl FnOnce(&mut EvaluationMode), act: impl FnOnce(&mut Self) -> T) -> T {
         let before = self.eval.mode;
         change(&mut self.eval.mode);
@@ -70,8 +75,9 @@ impl Instance<'_, '_> {
         done
     }
 
-    /// Does something in a frame of its own, as the body of a function: the locals around it are out of reach, those made in it
-    /// end with it, and relations make no events.
+    /// Runs `act` in a frame of its own, as for the body of a function.
+    /// Locals around it are not visible, locals made in it are removed at its end, and relations raise no events.
+    /// It serves the bodies of functions, and the binding of arguments before them.
     pub(in crate::instance) fn in_frame<T>(&mut self, act: impl FnOnce(&mut Self) -> T) -> T {
         let (frame, end) = (self.eval.frame, self.eval.locals.len());
         self.eval.frame = end;
@@ -81,31 +87,33 @@ impl Instance<'_, '_> {
         done
     }
 
-    /// A loop variable or local of the function being evaluated.
+    /// The index of a local that is visible by its name, the innermost one first. `None` if there is none.
     pub(in crate::instance) fn local(&self, name: Symbol) -> Option<usize> {
         let frame = self.eval.frame;
         let found = self.eval.locals[frame..].iter().rposition(|(n, _)| *n == name).map(|i| i + frame);
+        // Inside `pre` the variables of the section are looked up as components, so they are skipped here.
         found.filter(|i| !(self.eval.mode.before && self.eval.section.contains(i)))
     }
 }
 
-/// Statements carried out, against the most that are allowed.
+/// The number of statements executed and its limit. Two kinds of calls are counted apart.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct StatementBudget {
-    /// The present function is called with known values only.
+    /// The present function is called with known values only, so it is just computed.
     pub known: bool,
-    /// By functions that are written out, and by those that are simply carried out.
+    /// Statements so far: of calls with symbolic arguments, and of calls with known ones.
     done: [usize; 2],
+    /// The limits, in the same order.
     most: [usize; 2],
 }
 
 impl StatementBudget {
-    /// A fresh allowance for what is written out and what is carried out.
+    /// A new budget with the given limits: for calls with symbolic arguments, and for calls with known ones.
     pub fn allowed(most: [usize; 2]) -> Self {
         StatementBudget { known: false, done: [0; 2], most }
     }
 
-    /// Counts a statement; false when there have been too many.
+    /// Counts a statement. False if the limit is passed.
     pub fn step(&mut self) -> bool {
         let of = usize::from(self.known);
         self.done[of] += 1;

@@ -1,22 +1,30 @@
-//! What flows carry with them (MLS 15): `inStream`, `actualStream` and `Connections.inflow` as expressions of the streams and
-//! flows of a connection set.
+//! Stream connectors (MLS 15): `inStream`, `actualStream` and `Connections.inflow` as expressions.
+//!
+//! `flat` fills in the connection sets first, see [`StreamConnections`](crate::instance::StreamConnections).
+//! The results are mixtures of what the other members of a set send out, weighted by their flows.
 
 use crate::instance::{StreamMember, StreamMixing};
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp};
 
-/// Weight in the mixture of what flows into a component that mixes, where nothing flows. Multiplied by the inflow the mixture
-/// must give what is brought in to the last digit, or energy would not be conserved.
+/// The `least` of mixtures into a component with `__bramah_mixes`, which keeps them defined without flow.
+/// It is so small that mixture times inflow equals what is brought in to the last digit. Otherwise energy would not be
+/// conserved.
 const LEAST_SHARE: f64 = 1e-20;
 
-/// Flow to a node, in the unit of the connector's flow, below which its mixture leaves that of the flows for the plain mean: a
-/// ten thousandth of a usual flow of oil in m3/s, and far less of usual flows of mass in kg/s.
+/// Total flow to a node, in the unit of the connector's flow, below which a mixture approaches the plain mean.
+/// It is a ten thousandth of a usual flow of oil in m3/s, and far less than usual mass flows in kg/s.
 pub const LEAST_MIXED: f64 = 1e-8;
 
 impl StreamMixing<'_, '_, '_> {
-    /// `inStream(v)`: what would come in through the port of `v`.
+    /// `inStream(v)`: the value that flows in through the connector of `v` if the flow is inwards (MLS 15.2).
+    /// `variable` is an index into `variables`, as in all functions here. An unconnected stream gives `v` itself.
+    ///
+    /// The mixing rule is that of MLS 15.2. With two connected ports it is the value of the other one.
+    /// At a node with a mixing component all others get what leaves that component.
     pub fn in_stream(&mut self, variable: u32) -> ExprId {
         let own = self.instance.exprs.var(self.instance.variables[variable as usize].id);
         let Some(&set) = self.instance.streams.inside.get(&variable) else { return own };
+        // Everything at this node passes through the mixing component: the others receive what leaves it.
         if let Some(junction) = self.instance.streams.junction(set) {
             if variable != junction.mixer {
                 return self.leaving(junction.mixer);
@@ -25,19 +33,20 @@ impl StreamMixing<'_, '_, '_> {
             return if others.is_empty() { own } else { self.stream_mixture(&others, LEAST_SHARE) };
         }
         let members = &self.instance.streams.sets[set];
+        // An outside connector also contributes what comes from outside of the component.
         let others: Vec<StreamMember> =
             members.iter().filter(|m| m.outside || m.variable != variable).copied().collect();
         if others.is_empty() { own } else { self.stream_mixture(&others, LEAST_MIXED) }
     }
 
-    /// Notes what leaves through a port, if it is a number.
+    /// Notes the value with which a stream leaves its port, if it is a number. It is then used instead of the variable.
     pub fn leaves_with(&mut self, variable: u32, value: ExprId) {
         if matches!(self.instance.exprs.node(value), ExprNode::Num(_)) {
             self.instance.streams.constant.insert(variable, value);
         }
     }
 
-    /// What leaves through the port of a stream.
+    /// The value that leaves through the port of a stream: the noted number, or the variable.
     pub fn leaving(&mut self, variable: u32) -> ExprId {
         match self.instance.streams.constant.get(&variable) {
             Some(&number) => number,
@@ -45,8 +54,9 @@ impl StreamMixing<'_, '_, '_> {
         }
     }
 
-    /// `Connections.inflow(v)`: how much comes in through the port of `v`. Through a component that mixes passes all that
-    /// others send to its node, though more than its own flow.
+    /// `Connections.inflow(v)`: how much flows in through the port of `v`, at least 0.
+    /// Through a component with `__bramah_mixes` passes all that the others send to its node, even if that is more than
+    /// its own flow.
     pub fn inflow(&mut self, variable: u32, flow: u32) -> ExprId {
         let junction = self.instance.streams.inside.get(&variable).and_then(|&set| self.instance.streams.junction(set));
         let Some(junction) = junction.filter(|junction| junction.mixer == variable) else {
@@ -58,8 +68,11 @@ impl StreamMixing<'_, '_, '_> {
         self.total(sent)
     }
 
-    /// The mean of what members send, each with its flow as its weight. Where all of them together send less than `least`, the
-    /// weights become equal (MLS 15.2).
+    /// The mean of what `members` send to their node, each weighted by its flow (MLS 15.2).
+    /// Below a total of `least` the weights approach each other, so that the mean exists without flow.
+    ///
+    /// `members` lack the connector into which the mixture flows; the caller leaves it out.
+    /// An outside connector sends what flows in from outside, which is a mixture as well.
     pub fn stream_mixture(&mut self, members: &[StreamMember], least: f64) -> ExprId {
         let mut parts = Vec::with_capacity(members.len());
         for m in members {
@@ -69,6 +82,7 @@ impl StreamMixing<'_, '_, '_> {
             };
             parts.push((value, self.sent(m)));
         }
+        // If all send the same value, the mixture is that value, whatever the flows are.
         if let Some((value, rest)) = parts.split_first().map(|(&(value, _), rest)| (value, rest))
             && rest.iter().all(|(other, _)| *other == value)
         {
@@ -86,19 +100,20 @@ impl StreamMixing<'_, '_, '_> {
         self.instance.exprs.div(carried, all)
     }
 
-    /// What a member sends to its node.
+    /// The flow of a member towards its node, at least 0.
     fn sent(&mut self, m: &StreamMember) -> ExprId {
         let flow = self.instance.exprs.var(self.instance.variables[m.flow as usize].id);
+        // Flows count into the component: at an inside connector that is away from the node.
         let towards = if m.outside { flow } else { self.instance.exprs.neg(flow) };
         self.instance.exprs.binary(BinaryFunction::Max, towards, Exprs::ZERO)
     }
 
+    /// The sum of expressions.
     fn total(&mut self, parts: impl IntoIterator<Item = ExprId>) -> ExprId {
         parts.into_iter().fold(Exprs::ZERO, |sum, part| self.instance.exprs.add(sum, part))
     }
 
-    /// What is added to each weight where `total` is sent: nothing from `least` on, and below as much as keeps the mixture
-    /// determined and smooth.
+    /// The amount added to each weight: 0 from a total of `least` on, rising smoothly to `least` without flow.
     fn equal_share(&mut self, total: ExprId, least: f64) -> ExprId {
         let (least, two) = (self.instance.exprs.num(least), self.instance.exprs.num(2.0));
         let over = self.instance.exprs.div(total, least);
@@ -108,11 +123,12 @@ impl StreamMixing<'_, '_, '_> {
         self.instance.exprs.mul(least, power)
     }
 
-    /// `actualStream(v)`: what flows through the port of `v` one way or the other.
+    /// `actualStream(v)`: the value of what flows at present, inwards or outwards (MLS 15.3).
     pub fn actual_stream(&mut self, variable: u32, flow: u32) -> ExprId {
         let (inward, own) =
             (self.in_stream(variable), self.instance.exprs.var(self.instance.variables[variable as usize].id));
         let flow = self.instance.exprs.var(self.instance.variables[flow as usize].id);
+        // No event: the product with the flow, for which `actualStream` is meant, is continuous there.
         let enters = self.instance.exprs.rel(RelationalOp::Gt, flow, Exprs::ZERO);
         self.instance.exprs.if_(enters, inward, own)
     }

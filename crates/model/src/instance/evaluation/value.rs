@@ -1,4 +1,7 @@
-//! What an expression of the language evaluates to: scalars over the pool, arrays, records, texts.
+//! Values of expressions: scalars in the expression pool, arrays, records, texts.
+//!
+//! The evaluator, the operators and the calls make [`ModelicaValue`]s. `flat` splits them into scalar equations.
+//! A scalar is always an index into the pool [`Exprs`]; a known number is a constant node there.
 
 use bramah_expr::types::{MessagePart, ScalarType};
 use bramah_expr::{ExprId, Exprs};
@@ -7,52 +10,53 @@ use bramah_syntax::ast::Ident;
 use bramah_syntax::symbol::Symbol;
 use std::rc::Rc;
 
-/// A value.
+/// A value. Cloning is cheap: arrays and records are shared.
 #[derive(Clone, Debug)]
 pub enum ModelicaValue {
-    /// A number, truth value or enumeration value, known or symbolic.
+    /// A number, truth value or enumeration value with its type, known or symbolic. Truth values are 0 and 1.
     Scalar(ExprId, ScalarType),
-    /// A text, possibly with values in it.
+    /// A String, as literal pieces and values to be inserted.
     Text(Rc<Vec<MessagePart>>),
-    /// An array, row-major; elements are not arrays.
+    /// An array in row-major order. Its elements are no arrays themselves.
     Array {
-        /// Sizes.
+        /// The size along each dimension.
         dims: Vec<usize>,
-        /// Elements.
+        /// As many elements as the product of the sizes.
         elements: Rc<Vec<ModelicaValue>>,
     },
-    /// A record.
+    /// A record with its fields.
     Record(Rc<RecordValue>),
-    /// Several outputs of a function.
+    /// All outputs of a function, in the order of their declaration.
     Tuple(Rc<Vec<ModelicaValue>>),
-    /// What a constructor of an external object made.
+    /// The result of the constructor of an external object (MLS 12.9.7).
     Object(ExternalObject),
-    /// A function given as an argument: its number in the instance, and inputs that it was given already.
+    /// A function passed as an argument: its number in the instance, and the inputs bound by partial application (MLS
+    /// 12.4.2.1).
     Function(u32, Rc<Vec<(Ident, ModelicaValue)>>),
 }
 
-/// A record: its fields, and the class of an operator record among those of the instance.
+/// A record value.
 #[derive(Clone, Debug)]
 pub struct RecordValue {
-    /// Names and values in the order of their declaration.
+    /// Names and values of the fields, in the order of their declaration.
     pub fields: Vec<(Symbol, ModelicaValue)>,
-    /// Number of its class, for an operator record.
+    /// The class of an operator record: index into the list of the instance. `None` for other records.
     pub class: Option<u32>,
 }
 
 impl ModelicaValue {
-    /// A text without values.
+    /// A String literal.
     pub fn text(words: impl Into<String>) -> ModelicaValue {
         ModelicaValue::Text(Rc::new(vec![MessagePart::Text(words.into())]))
     }
 
-    /// An array.
+    /// An array of elements in row-major order.
     pub fn array(dims: Vec<usize>, elements: Vec<ModelicaValue>) -> ModelicaValue {
         debug_assert_eq!(dims.iter().product::<usize>(), elements.len());
         ModelicaValue::Array { dims, elements: Rc::new(elements) }
     }
 
-    /// Sizes; none for anything but arrays.
+    /// The sizes of an array; empty for anything else.
     pub fn dims(&self) -> &[usize] {
         match self {
             ModelicaValue::Array { dims, .. } => dims,
@@ -60,7 +64,7 @@ impl ModelicaValue {
         }
     }
 
-    /// The elements in row-major order; a scalar is its own only element.
+    /// The elements in row-major order. Anything but an array is its own only element.
     pub fn elements(&self) -> &[ModelicaValue] {
         match self {
             ModelicaValue::Array { elements, .. } => elements,
@@ -68,7 +72,7 @@ impl ModelicaValue {
         }
     }
 
-    /// The scalar expression and its type.
+    /// The expression and its type. `None` for anything but a scalar.
     pub fn scalar(&self) -> Option<(ExprId, ScalarType)> {
         match self {
             ModelicaValue::Scalar(e, ty) => Some((*e, *ty)),
@@ -76,24 +80,24 @@ impl ModelicaValue {
         }
     }
 
-    /// The number, if known.
+    /// The number of a scalar that is known. `None` for symbolic scalars and other values.
     pub fn as_number(&self, exprs: &Exprs) -> Option<f64> {
         exprs.as_num(self.scalar()?.0)
     }
 
-    /// The words, if it is a text without symbolic values.
+    /// The characters of a String that contains no symbolic values. `None` otherwise.
     pub fn as_text(&self, exprs: &Exprs) -> Option<String> {
         let ModelicaValue::Text(parts) = self else { return None };
         parts.iter().map(|part| words(part, exprs)).collect()
     }
 
-    /// A text for messages, with `...` for values that are not known.
+    /// A String for messages, with `...` for values that are not known.
     pub fn in_words(&self, exprs: &Exprs) -> String {
         let ModelicaValue::Text(parts) = self else { return String::new() };
         parts.iter().map(|part| words(part, exprs).unwrap_or_else(|| "...".to_owned())).collect()
     }
 
-    /// The type of the first scalar inside.
+    /// The type of the first scalar inside. `None` for empty arrays, Strings and records.
     pub fn element_type(&self) -> Option<ScalarType> {
         match self {
             ModelicaValue::Scalar(_, ty) => Some(*ty),
@@ -102,7 +106,8 @@ impl ModelicaValue {
         }
     }
 
-    /// A few words for messages: "a Real", "an array of size 3", "a record".
+    /// A description for messages: "a Real", "an array of size `[3]`", "a record".
+    /// It tells the kind and, for arrays, the size. It does not show the value itself.
     pub fn describe(&self) -> String {
         match self {
             ModelicaValue::Scalar(_, ScalarType::Real) => "a Real".into(),
@@ -118,7 +123,7 @@ impl ModelicaValue {
         }
     }
 
-    /// The value itself, or the first of several outputs.
+    /// The value itself, or the first one of several outputs.
     pub fn first_output(&self) -> ModelicaValue {
         match self {
             ModelicaValue::Tuple(values) => values.first().unwrap_or(self).clone(),
@@ -126,14 +131,15 @@ impl ModelicaValue {
         }
     }
 
-    /// All scalars in order.
+    /// All scalars inside, in order.
     pub fn all_scalars(&self) -> Vec<ExprId> {
         let mut found = Vec::new();
         self.scalars(&mut found);
         found
     }
 
-    /// All scalars inside, in order.
+    /// Appends all scalars inside to `out`: arrays in row-major order, fields in declaration order.
+    /// Strings and external objects have none. Bound inputs of a function value count.
     pub fn scalars(&self, out: &mut Vec<ExprId>) {
         match self {
             ModelicaValue::Scalar(e, _) => out.push(*e),
@@ -145,7 +151,10 @@ impl ModelicaValue {
         }
     }
 
-    /// The same shape with other scalars.
+    /// A value of the same shape in which `change` has replaced each scalar. Strings stay as they are.
+    ///
+    /// Types are kept. It walks through arrays, records, tuples and the bound inputs of functions, in the order of
+    /// [`Self::scalars`].
     pub fn map(&self, change: &mut impl FnMut(ExprId, ScalarType) -> ExprId) -> ModelicaValue {
         match self {
             ModelicaValue::Scalar(e, ty) => ModelicaValue::Scalar(change(*e, *ty), *ty),
@@ -167,7 +176,14 @@ impl ModelicaValue {
         }
     }
 
-    /// Combines two values of equal shape scalar by scalar; `None` if the shapes differ.
+    /// Combines two values of equal shape scalar by scalar. `None` if their shapes or types do not fit.
+    ///
+    /// `combine` gets both scalars and their common type, and its result has that type.
+    /// - Arrays must have the same sizes, tuples the same length, functions the same number.
+    /// - Records must have the same field names; the class of the left one is kept.
+    /// - Strings must be equal.
+    ///
+    /// `None` is no error by itself: the caller reports the difference in its own words.
     pub fn zip(
         &self,
         other: &ModelicaValue,
@@ -187,6 +203,7 @@ impl ModelicaValue {
             (ModelicaValue::Record(a), ModelicaValue::Record(b)) if a.fields.len() == b.fields.len() => {
                 let mut fields = Vec::with_capacity(a.fields.len());
                 for (name, value) in &a.fields {
+                    // Fields are matched by name: two records may declare them in different orders.
                     let (_, other) = b.fields.iter().find(|(n, _)| n == name)?;
                     fields.push((*name, value.zip(other, combine)?));
                 }
@@ -201,14 +218,17 @@ impl ModelicaValue {
                     a.iter().zip(b.iter()).map(|((n, a), (_, b))| Some((*n, a.zip(b, combine)?))).collect();
                 ModelicaValue::Function(*f, Rc::new(both?))
             }
+            // Strings cannot be combined; equal ones stay as they are.
             (ModelicaValue::Text(a), ModelicaValue::Text(b)) if a == b => ModelicaValue::Text(a.clone()),
             _ => return None,
         })
     }
 
-    /// A sub-array by the first index, or the element of a vector.
+    /// The element at first index `i` (from 0): `a[i + 1, :, ...]`. `None` out of bounds, or for anything but an array.
+    /// For `a` of size `[2, 3]` the slice at 0 is the row `a[1, :]` of size `[3]`.
     pub fn slice(&self, i: usize) -> Option<ModelicaValue> {
         let ModelicaValue::Array { dims, elements } = self else { return None };
+        // Only the first dimension is indexed; the others form the result.
         let inner = &dims[1..];
         let step: usize = inner.iter().product();
         if i >= dims[0] {
@@ -221,7 +241,7 @@ impl ModelicaValue {
     }
 }
 
-/// The common type of two scalars: Integer fits where Real is needed.
+/// The common type of two scalars. An Integer fits where a Real is needed (MLS 10.6.13). `None` if they do not fit.
 pub fn wider(a: ScalarType, b: ScalarType) -> Option<ScalarType> {
     match (a, b) {
         (a, b) if a == b => Some(a),
@@ -230,7 +250,8 @@ pub fn wider(a: ScalarType, b: ScalarType) -> Option<ScalarType> {
     }
 }
 
-/// Stacks values of equal shape into an array with one more dimension.
+/// Stacks values of equal shape into an array with one more dimension, in front. `None` if their shapes differ.
+/// Used for array constructors `{a, b}` and for results of vectorized calls. No values give an empty vector.
 pub fn stack(values: Vec<ModelicaValue>) -> Option<ModelicaValue> {
     let inner = values.first().map_or(Vec::new(), |v| v.dims().to_vec());
     if values.iter().any(|v| v.dims() != inner) {
@@ -242,7 +263,8 @@ pub fn stack(values: Vec<ModelicaValue>) -> Option<ModelicaValue> {
     Some(ModelicaValue::array(dims, unify(elements)))
 }
 
-/// Integers among Reals become Reals.
+/// Turns Integers into Reals if there is a Real among the elements.
+/// `{1, 2.5}` is an array of two Reals (MLS 10.4).
 fn unify(mut elements: Vec<ModelicaValue>) -> Vec<ModelicaValue> {
     let real = elements.iter().any(|v| matches!(v, ModelicaValue::Scalar(_, ScalarType::Real)));
     if real {
@@ -255,14 +277,15 @@ fn unify(mut elements: Vec<ModelicaValue>) -> Vec<ModelicaValue> {
     elements
 }
 
-/// `[2, 3]`
+/// Sizes for messages: `[2, 3]`.
 pub fn size_text(dims: &[usize]) -> String {
     let parts: Vec<String> = dims.iter().map(usize::to_string).collect();
     format!("[{}]", parts.join(", "))
 }
 
 impl ModelicaValue {
-    /// Numbers of the wider of their own and the given type.
+    /// The value with each scalar in the wider of its own and the given type.
+    /// An Integer becomes a Real if `ty` is Real; all other types stay.
     pub(in crate::instance) fn with_type(&self, ty: ScalarType) -> ModelicaValue {
         match self {
             ModelicaValue::Scalar(e, own) => ModelicaValue::Scalar(*e, wider(*own, ty).unwrap_or(*own)),
@@ -274,7 +297,8 @@ impl ModelicaValue {
     }
 }
 
-/// A part of a text, where its value is known.
+/// One piece of a String as characters. `None` if it is a value that is not known.
+/// Numbers are written with six digits, Booleans as `true` and `false`, enumeration values as numbers.
 fn words(part: &MessagePart, exprs: &Exprs) -> Option<String> {
     match part {
         MessagePart::Text(words) => Some(words.clone()),

@@ -1,4 +1,9 @@
-//! Names: from the innermost place outwards, through inherited elements, imports and enclosing classes (MLS 5.3).
+//! What names mean: from the innermost place outwards, through inherited elements, imports and enclosing classes (MLS
+//! 5.3).
+//!
+//! A name and a [`LookupContext`] go in, a [`LookupResult`] comes out: a component, a class or a predefined type.
+//! [`NameLookup::reached`] stands here too: it collects the modifiers that reach one element.
+//! Lookup builds what it needs on demand: templates of classes, scopes of packages.
 
 use crate::instance::modifiers::{ElementModifiers, Modifier, ModifierKind};
 use crate::instance::template::{
@@ -15,7 +20,7 @@ use bramah_syntax::symbol::Symbol;
 use rustc_hash::FxHashMap;
 use std::rc::Rc;
 
-/// The types that need no declaration.
+/// The predefined types, which need no declaration (MLS 4.9).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica names")]
 pub enum BuiltinType {
@@ -23,7 +28,7 @@ pub enum BuiltinType {
     Integer,
     Boolean,
     String,
-    /// `ExternalObject`
+    /// `ExternalObject` (MLS 12.9.7).
     Object,
     /// Index into `Instance::enumerations`.
     Enumeration(u32),
@@ -32,20 +37,21 @@ pub enum BuiltinType {
 /// What a name means.
 #[derive(Clone)]
 pub enum LookupResult<'a> {
-    /// An element that is a component.
+    /// A component: the scope that holds it, and its index in the template. It may not be built yet.
     Component(ScopeId, u32),
-    /// A class.
+    /// A class, with redeclarations applied.
     Class(ClassRef<'a>),
-    /// A built-in type.
+    /// A predefined type.
     Builtin(BuiltinType),
 }
 
-/// Enumerations that are always there.
+/// Number of the predefined enumeration `StateSelect` (MLS 4.9.7).
 pub const STATE_SELECT: u32 = 0;
-/// `AssertionLevel`
+/// Number of the predefined enumeration `AssertionLevel`.
 pub const ASSERTION_LEVEL: u32 = 1;
 
-/// The predefined enumerations, in the order of the constants above.
+/// The predefined enumerations. Their positions are the constants above.
+/// They exist in every instance, before any class is looked up.
 pub fn predefined_enumerations() -> Vec<EnumerationDefinition> {
     let make = |name: &str, literals: &[&str]| EnumerationDefinition {
         name: name.into(),
@@ -57,6 +63,8 @@ pub fn predefined_enumerations() -> Vec<EnumerationDefinition> {
     ]
 }
 
+/// The predefined type of a name; `None` for any other name.
+/// `StateSelect` and `AssertionLevel` are predefined enumerations, so they need no declaration either.
 fn builtin(name: Symbol) -> Option<BuiltinType> {
     Some(match name.as_str() {
         "Real" => BuiltinType::Real,
@@ -71,12 +79,19 @@ fn builtin(name: Symbol) -> Option<BuiltinType> {
 }
 
 impl<'a> NameLookup<'_, 'a, '_> {
-    /// What a simple name means at a place.
+    /// What a simple name means at a place. `None` if it means nothing; no message is reported.
     pub fn lookup(&mut self, view: LookupContext, name: Symbol) -> Option<LookupResult<'a>> {
         self.lookup_nested(view, name).or_else(|| self.lookup_top(name))
     }
 
-    /// What a name means below the top level.
+    /// What a name means below the top level: in the class at `view`, its imports, and the classes around it.
+    ///
+    /// The search goes outwards from `view`, class by class:
+    /// 1. elements that the class declares or inherits,
+    /// 2. classes that the library knows in it,
+    /// 3. its imports.
+    ///
+    /// `None` if the search reaches the top level or an `encapsulated` class without a result.
     pub(in crate::instance) fn lookup_nested(
         &mut self,
         mut view: LookupContext,
@@ -85,12 +100,15 @@ impl<'a> NameLookup<'_, 'a, '_> {
         while view != ROOT {
             let template = self.instance.scope(view.scope).template.clone();
             let base = &template.bases[view.base as usize];
+            // A short class has no names of its own: `model A = B(x = y)` looks up `y` around `A`.
             if !base.short {
+                // The order of MLS 5.3.1: declared and inherited elements first, imports second.
                 if base.names.contains(&name)
                     && let Some(&i) = template.by_name.get(&name)
                 {
                     return Some(self.found(view.scope, &template, i));
                 }
+                // Classes that are in the library but not in the template, such as those in files of their own.
                 if let Some(class) = self.instance.library.child(base.class, name) {
                     return Some(LookupResult::Class(ClassRef { class, parent: view, args: Rc::from([]) }));
                 }
@@ -98,11 +116,14 @@ impl<'a> NameLookup<'_, 'a, '_> {
                     return Some(found);
                 }
             }
+            // `encapsulated` stops the search: only predefined types and top-level classes remain (MLS 5.3.1).
             view = if base.ast.prefixes.encapsulated { ROOT } else { base.parent };
         }
         None
     }
 
+    /// What a name means at the top level: a predefined type or a top-level class of the library.
+    /// Predefined types come before classes of the library: their names cannot be used otherwise (MLS 4.9).
     fn lookup_top(&mut self, name: Symbol) -> Option<LookupResult<'a>> {
         if let Some(b) = builtin(name) {
             return Some(LookupResult::Builtin(b));
@@ -113,6 +134,11 @@ impl<'a> NameLookup<'_, 'a, '_> {
             .map(|class| LookupResult::Class(ClassRef { class, parent: ROOT, args: Rc::from([]) }))
     }
 
+    /// What a name means through the imports of a class (MLS 13.2.1).
+    /// The forms are `import A.B;`, `import D = A.B;`, `import A.{B, C};` and `import A.*;`.
+    ///
+    /// The imports are tried in the order of the text. An import that leads nowhere is skipped, and is reported only
+    /// when the name is not found at all.
     fn imported(&mut self, base: &BaseClass<'a>, name: Symbol) -> Option<LookupResult<'a>> {
         for import in &base.imports {
             let found = match import {
@@ -133,6 +159,9 @@ impl<'a> NameLookup<'_, 'a, '_> {
         None
     }
 
+    /// What the full name `parts` means, or the member `last` of it. Imports begin at the top level (MLS 13.2.1).
+    ///
+    /// Members on the way are checked: protected ones are reported. `None` if a part is unknown, without a message.
     fn lookup_full(&mut self, parts: &[ast::Ident], last: Option<Symbol>) -> Option<LookupResult<'a>> {
         let mut found = self.lookup_top(parts[0].name)?;
         for part in &parts[1..] {
@@ -146,7 +175,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
-    /// The meaning of an element: its class, or the component itself.
+    /// The meaning of an element: a component as such, a class with redeclarations applied.
     fn found(&mut self, scope: ScopeId, template: &Template<'a>, index: u32) -> LookupResult<'a> {
         match template.elements[index as usize].kind {
             TemplateElementKind::Component(_) => LookupResult::Component(scope, index),
@@ -154,7 +183,13 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
-    /// A class element of an instance, redeclarations considered.
+    /// A class element of an instance, with redeclarations applied and checked.
+    ///
+    /// If a redeclaration does not fit, a message is reported and the declared class is returned.
+    ///
+    /// The outermost redeclaration decides which class it is and where its names are looked up.
+    /// Its modifiers are those of the element, followed by those of `constrainedby` or of the declaration (MLS 7.3.2).
+    /// The result is stored in the state of the element.
     fn class_element(&mut self, scope: ScopeId, index: u32) -> ClassRef<'a> {
         if let ElementState::Class(found) = &self.instance.scope(scope).elements[index as usize] {
             return found.clone();
@@ -171,16 +206,19 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let textual = template.bases[element.base as usize].class;
         let class = self.instance.library.enter(ast, Some(textual));
         let mut args = reached.args;
+        // These come last, because they are further in than everything that reached the element from outside.
         if let Some(m) = constraining(declared, redeclared) {
             let none: Rc<[_]> = Rc::from([]);
             let given = m.arguments.iter().filter_map(|a| Modifier::new(a, own, &none, false));
             args.extend(given.map(|a| Modifier { default: redeclared, ..a }));
         }
         let mut found = ClassRef { class, parent, args: args.into() };
+        // Entered before the checks, because these may look up the same element again.
         self.instance.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
         self.check_class_chain(declared, own, textual, &reached.redeclarations);
         if redeclared && !self.fits_declared(declared, own, textual, ast.name.span, &found) {
-            // what follows is said of the declared class, which the rest of the text was written for
+            // The rest of the text was written for the declared class: using it avoids messages that only follow from
+            // this one.
             let class = self.instance.library.enter(declared, Some(textual));
             found = ClassRef { class, parent: own, args: Rc::from([]) };
             self.instance.scope_mut(scope).elements[index as usize] = ElementState::Class(found.clone());
@@ -188,7 +226,18 @@ impl<'a> NameLookup<'_, 'a, '_> {
         found
     }
 
-    /// Classes that redeclarations put in each other's place keep to the constraints said on the way (MLS 7.3).
+    /// Checks each redeclaration of a class against the constraining classes of the declarations that it passed (MLS
+    /// 7.3).
+    ///
+    /// `all` lists the redeclarations, outermost first; `own` and `textual` are the surroundings of `declared`.
+    ///
+    /// ```text
+    /// replaceable model M = A constrainedby Base;      // the declaration, innermost
+    /// redeclare replaceable model M = B constrainedby B2;   // must fit Base
+    /// redeclare model M = C;                           // must fit B2 and Base
+    /// ```
+    ///
+    /// The check ends with the first step that does not fit.
     fn check_class_chain(
         &mut self,
         declared: &'a ast::Class,
@@ -200,12 +249,14 @@ impl<'a> NameLookup<'_, 'a, '_> {
             ModifierKind::Class(c) => Some((*c, *view)),
             _ => None,
         });
+        // The declaration itself is the innermost step.
         let steps: Vec<(&'a ast::Class, LookupContext)> = steps.chain([(declared, own)]).collect();
         let outermost = self.class_of(steps[0].0, steps[0].1, textual);
         for &(step, view) in &steps {
             let Some(constraint) = &step.constraint else { continue };
             let Ok(promised) = self.lookup_path(view, &constraint.path) else { continue };
             let itself = self.class_of(step, view, textual);
+            // Both the class of the step and the class finally used must fit the constraint of the step.
             if !self.instance.builder().check_subtype(&promised, &itself, step.name.span, constraint.path.span)
                 || !self.instance.builder().check_subtype(
                     &promised,
@@ -219,12 +270,19 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
+    /// A class definition as a lookup result without modifiers. `textual` is the class in which it is written.
     fn class_of(&mut self, ast: &'a ast::Class, parent: LookupContext, textual: ClassId) -> LookupResult<'a> {
         let class = self.instance.library.enter(ast, Some(textual));
         LookupResult::Class(ClassRef { class, parent, args: Rc::from([]) })
     }
 
-    /// Whether a class that takes the place of a declared one has what the constraining class promises (MLS 6.4).
+    /// Whether a redeclared class has everything that the constraining class of the declaration has (MLS 6.4, 7.3.2).
+    ///
+    /// Without `constrainedby`, the declared class is the constraint. Returns true if the constraint is not found.
+    ///
+    /// `at` is the place of the redeclaration for the message, `found` the class that it names.
+    /// Looking up constraints may nest; too deep a nest is reported as endless.
+    /// If the constraint is the class itself, its own elements are what the replacement must have.
     fn fits_declared(
         &mut self,
         declared: &'a ast::Class,
@@ -243,7 +301,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
             self.endless_lookup("constraining", class, &self.instance.classes.constrained.clone());
             return true;
         }
-        // the lookup may meet other redeclared classes, whose constraints are looked up first
+        // Looking up the constraint may meet other redeclared classes, whose constraints must be looked up first.
         self.instance.classes.constrained.push(class);
         let (constraint, place) = match path {
             Some(path) => (self.lookup_path(own, path).ok(), path.span),
@@ -256,8 +314,13 @@ impl<'a> NameLookup<'_, 'a, '_> {
             .is_none_or(|c| self.instance.builder().check_subtype(&c, &LookupResult::Class(found.clone()), at, place))
     }
 
-    /// What a dotted name may reach: nothing protected, and in a class that is used as a package only what does not depend
-    /// on its components (MLS 4.1, 5.3.2).
+    /// Reports a dotted name that reaches what it may not (MLS 4.1, 5.3.2).
+    ///
+    /// A protected element is not reachable. In a class that is no package only `encapsulated` classes are.
+    ///
+    /// `around` is what was found for the name before the dot, `inside` what was found for `part`.
+    /// Nothing is checked while the bases of `around` are looked up.
+    /// The message is reported at `part`, once for each place in the text.
     pub(in crate::instance) fn check_member(
         &mut self,
         around: &LookupResult<'a>,
@@ -265,6 +328,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         part: ast::Ident,
     ) {
         let LookupResult::Class(class) = around else { return };
+        // The bases of this class are not known yet, so neither are all of its elements.
         if self.instance.classes.gathering.iter().any(|(c, _)| *c == class.class) {
             return;
         }
@@ -291,6 +355,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         } else {
             return;
         };
+        // The same name may be looked up many times; one message is enough.
         if self.instance.diagnostics.iter().any(|d| d.labels.first().is_some_and(|l| l.span == part.span)) {
             return;
         }
@@ -298,7 +363,12 @@ impl<'a> NameLookup<'_, 'a, '_> {
         self.instance.report(d.help(help).note("Modelica 3.6, 4.1 and 5.3.2"));
     }
 
-    /// A member of something found: a class in a package, a constant, an inherited class.
+    /// A member of a class that was found: a class in a package, a constant, an inherited class.
+    /// `None` if there is no such member, or `found` is no class.
+    ///
+    /// The class is treated as a package: its scope is created if there is none.
+    /// While its own bases are looked up, only what is written in it can be found, as in `package P extends
+    /// P.Icons.Package`.
     pub fn member(&mut self, found: &LookupResult<'a>, name: Symbol) -> Option<LookupResult<'a>> {
         let LookupResult::Class(class) = found else { return None };
         let scope = if self.instance.classes.gathering.contains(&(class.class, class.parent)) {
@@ -311,6 +381,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         if let Some(&i) = template.by_name.get(&name) {
             return Some(self.found(scope, &template, i));
         }
+        // A class of the library that no template lists, in the class itself or in one of its bases.
         for (base, view) in template.bases.iter().zip(0u32..) {
             if let Some(child) = self.instance.library.child(base.class, name) {
                 let parent = LookupContext { scope, base: view };
@@ -320,10 +391,10 @@ impl<'a> NameLookup<'_, 'a, '_> {
         None
     }
 
-    /// What a dotted name means; the error is the number of the part that is not known.
+    /// What a dotted name means. No message is reported for an unknown part.
     ///
     /// # Errors
-    /// The index of the first part that means nothing.
+    /// The index of the first part that means nothing: 1 for `A.B.C` if `A` has no `B`.
     pub fn lookup_path(&mut self, view: LookupContext, path: &ast::Path) -> Result<LookupResult<'a>, usize> {
         let first = path.parts[0].name;
         let start = if path.global { self.lookup_top(first) } else { self.lookup(view, first) };
@@ -336,7 +407,12 @@ impl<'a> NameLookup<'_, 'a, '_> {
         Ok(found)
     }
 
-    /// A class by path, or a message.
+    /// The class or predefined type at a path. `None` after a message: unknown, or a component.
+    /// The result may be a predefined type. Callers that need a class with elements check that themselves.
+    ///
+    /// ```text
+    /// C c;    // C is looked up here, with a message if it is unknown
+    /// ```
     pub fn class_at(&mut self, view: LookupContext, path: &'a ast::Path) -> Option<LookupResult<'a>> {
         match self.lookup_path(view, path) {
             Ok(LookupResult::Component(..)) => {
@@ -355,8 +431,9 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
-    /// The base class named in an `extends` clause or short class: looked up beside and around the class, not in what
-    /// it inherits.
+    /// The class named in an `extends` clause or a short class definition. `None` if it is unknown, without a message.
+    ///
+    /// It is looked up in and around the class, but not in what the class inherits (MLS 5.6.1).
     pub(in crate::instance) fn find_base(
         &mut self,
         class: ClassId,
@@ -371,7 +448,12 @@ impl<'a> NameLookup<'_, 'a, '_> {
         self.lookup_path(parent, path).ok()
     }
 
-    /// A scope that knows only the classes and imports written in a class itself.
+    /// A scope that holds only the classes and imports written in a class itself, without components and bases.
+    ///
+    /// The bases of a class are looked up in it. That avoids the question which names the bases themselves contribute.
+    /// Redeclared classes are left out, because they need the inherited class.
+    /// The scope is made once for each class and place, and its elements never become components.
+    /// Components are left out as well: a base class is never found through a component.
     fn bare_scope(&mut self, class: ClassId, parent: LookupContext) -> ScopeId {
         if let Some(&scope) = self.instance.classes.uninherited.get(&(class, parent)) {
             return scope;
@@ -406,6 +488,11 @@ impl<'a> NameLookup<'_, 'a, '_> {
         scope
     }
 
+    /// Creates a scope whose elements are not built yet and returns its id.
+    ///
+    /// `owner` is the instance that the new one is a component of; `None` for packages and functions.
+    /// `span` is the declaration for messages. The caller sets binding, prefixes and `component` if they apply.
+    /// Elements start as unknown. They are built when somebody asks for them.
     pub(in crate::instance) fn new_scope(
         &mut self,
         template: Rc<Template<'a>>,
@@ -430,7 +517,11 @@ impl<'a> NameLookup<'_, 'a, '_> {
         ScopeId(u32::try_from(self.instance.scopes.len() - 1).expect("fewer than 2^32 instances"))
     }
 
-    /// The scope of a package, or of a class used as one.
+    /// The scope of a package, or of a class used as one. It is created at the first request.
+    ///
+    /// Packages exist once for each class, place and list of modifiers.
+    /// So a constant of a package is evaluated once, and two references to the package see the same instance.
+    /// Modifiers come from redeclarations, as in `redeclare package Medium = Oil(T0 = 300)`.
     pub fn package(&mut self, class: &ClassRef<'a>) -> ScopeId {
         let key = (class.class, class.parent);
         if class.args.is_empty() {
@@ -442,6 +533,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
             .classes
             .modified_packages
             .iter()
+            // Modifiers are compared by address: equal ones from two places give two scopes, which is correct but not
+            // shared.
             .find(|(c, _)| (c.class, c.parent) == key && Rc::ptr_eq(&c.args, &class.args))
         {
             return scope;
@@ -458,7 +551,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
         scope
     }
 
-    /// The enumeration type of a class.
+    /// The number of the enumeration type that a class defines. `enumeration(:)` has no literals.
+    /// The number is an index into `Instance::enumerations`, and part of the scalar type of its values.
     pub(in crate::instance) fn enumeration(&mut self, class: ClassId) -> u32 {
         if let Some(&i) = self.instance.classes.enumerations.get(&class) {
             return i;
@@ -474,7 +568,19 @@ impl<'a> NameLookup<'_, 'a, '_> {
         i
     }
 
-    /// All modifications that reach an element, and its value.
+    /// All modifiers that reach an element, and its value.
+    ///
+    /// They come from the instance's modifiers, then from `extends` clauses outermost first, then from the declaration.
+    /// The outermost value wins (MLS 7.2.4). A modifier outside of a `final` one is an error (MLS 7.2.6).
+    ///
+    /// In this order, outermost first:
+    /// 1. modifiers that the instance has got, except defaults;
+    /// 2. redeclarations that a short class itself states;
+    /// 3. defaults, which belong to the declaration of a redeclared class;
+    /// 4. modifiers of `extends` clauses, and those that base classes had where they were found;
+    /// 5. the modifiers of `constrainedby` and of the declaration itself.
+    ///
+    /// The value of a record instance counts as a value of each field: after step 1 for fields that are not constant.
     pub fn reached(&mut self, scope: ScopeId, index: u32) -> ElementModifiers<'a> {
         let s = self.instance.scope(scope);
         let template = s.template.clone();
@@ -482,6 +588,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let mut reached = ElementModifiers::default();
         let args = s.args.clone();
         let binding = s.binding.clone();
+        // Where the first modifier of the element itself stands, to be named by the message about `final`.
         let mut outer: Option<Span> = None;
         let (defaults, given): (Vec<_>, Vec<_>) =
             args.iter().filter(|a| a.target() == element.name).partition(|a| a.default);
@@ -492,6 +599,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
             }
             reached.take(arg);
         }
+        // `R r = expr` gives `r.x` the part `expr.x`, unless a modifier gives `r.x` its own value.
         let of_record = binding.filter(|_| matches!(element.kind, TemplateElementKind::Component(_))).map(|b| {
             let access =
                 b.access.iter().copied().chain([crate::instance::modifiers::AccessStep::Field(element.name)]).collect();
@@ -502,7 +610,9 @@ impl<'a> NameLookup<'_, 'a, '_> {
         if !constant && reached.binding.is_none() {
             reached.binding = of_record.clone();
         }
+        // Modifiers by `extends` clauses apply to the complete class and carry no array index.
         let none: Rc<[_]> = Rc::from([]);
+        // `model A = B(redeclare ...)`: what the short class says itself is further out than all defaults.
         let redeclaration = |s: &&ExtendsModification<'a>| s.base == 0 && template.bases[0].short;
         let (own, inherited): (Vec<_>, Vec<_>) = element.modified.iter().partition(redeclaration);
         let as_arg = |s: &ExtendsModification<'a>| source_arg(s, LookupContext { scope, base: s.base }, &none);
@@ -526,21 +636,27 @@ impl<'a> NameLookup<'_, 'a, '_> {
         if let TemplateElementKind::Component(c) = element.kind {
             self.check_final(c.prefixes.final_, outer, c.name.span, element.name);
             let redeclared = matches!(reached.redeclare, Some((ModifierKind::Component(_), ..)));
+            // The modifiers of `constrainedby` hold for every class in place of the declared one (MLS 7.3.2).
             let constraint = c.constraint.as_ref().and_then(|k| k.modification.as_ref());
             let view = LookupContext { scope, base: element.base };
             if let Some(m) = constraint {
                 reached.modification(m, view, &none, false, false, element.span);
             }
+            // A redeclaration drops the declaration's own modifiers if `constrainedby` says what is to stay.
             if let Some(m) = c.modification.as_ref().filter(|_| !(redeclared && c.constraint.is_some())) {
                 reached.modification(m, view, &none, false, c.prefixes.final_, element.span);
             }
         }
+        // A record value counts more than the field's own declaration, except for constants, which come to it only
+        // here.
         if reached.binding.is_none() && !reached.no_binding {
             reached.binding = of_record;
         }
         reached
     }
 
+    /// Reports an element that is modified at `outer` although a `final` modifier further in forbids it (MLS 7.2.6).
+    /// `outer` is `None` if nothing further out modifies the element; then there is nothing to report.
     pub(in crate::instance) fn check_final(&mut self, final_: bool, outer: Option<Span>, span: Span, name: Symbol) {
         if let (true, Some(outer)) = (final_, outer) {
             self.instance.report(
@@ -552,7 +668,11 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
-    /// The component that an `outer` element means: the nearest `inner` of that name above.
+    /// The component that an `outer` element refers to: the nearest `inner` one of that name further out (MLS 5.4).
+    /// If there is none, it is one that was created at the top level. `None` if that does not exist either.
+    ///
+    /// The search begins at the owner of `scope`, so an element that is both `inner` and `outer` does not find itself.
+    /// Building the `inner` component on demand may report messages.
     pub(in crate::instance) fn inner_of(&mut self, scope: ScopeId, name: Symbol) -> Option<NodeId> {
         let mut at = self.instance.scope(scope).owner;
         while let Some(owner) = at {
@@ -568,8 +688,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
     }
 }
 
-/// What is modified whatever class stands in the place of a declared one: the modifiers of its `constrainedby`, or, where
-/// it was redeclared and has none, those of its own short declaration (MLS 7.3.2).
+/// The modifiers that hold for every class in place of a declared one (MLS 7.3.2).
+/// These are the modifiers of `constrainedby`. A redeclared short class without one passes on its own modifiers.
 fn constraining(declared: &ast::Class, redeclared: bool) -> Option<&ast::Modification> {
     match (&declared.constraint, &declared.body) {
         (Some(c), _) => c.modification.as_ref(),
@@ -578,7 +698,9 @@ fn constraining(declared: &ast::Class, redeclared: bool) -> Option<&ast::Modific
     }
 }
 
-/// A modification by a base class as an argument.
+/// A modifier from an `extends` clause, in the form in which modifiers from outside come.
+/// `None` for `break`, which was applied while the elements were gathered.
+/// `view` is the base in which the clause stands.
 fn source_arg<'a>(
     source: &ExtendsModification<'a>,
     view: LookupContext,

@@ -1,4 +1,9 @@
-//! What a class holds, inherited elements included: gathered once per class, shared by all its instances.
+//! The elements of a class, inherited ones included.
+//!
+//! [`NameLookup::template`] takes a class and its surroundings and returns a [`Template`].
+//! It walks through the `extends` clauses, depth first, and notes with each element which base declares it and which
+//! `extends` clauses modify it. No modifier is applied here; [`NameLookup::reached`] does that per instance.
+//! A template exists once per class and place, and all instances share it.
 
 use crate::instance::lookup::{BuiltinType, LookupResult};
 use crate::instance::modifiers::Modifier;
@@ -10,57 +15,60 @@ use bramah_syntax::symbol::Symbol;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::rc::Rc;
 
-/// The elements of a class.
+/// The elements of a class together with the classes that it extends.
 #[derive(Clone)]
 pub struct Template<'a> {
-    /// The class.
+    /// The class that was asked for.
     pub class: ClassId,
-    /// The class and everything it extends; 0 is the class itself.
+    /// The class and everything it extends, depth first in the order of the text; 0 is the class itself.
     pub bases: Vec<BaseClass<'a>>,
-    /// Elements in declaration order, inherited ones where the `extends` stands.
+    /// Elements in declaration order. Inherited ones stand where the `extends` clause stands.
     pub elements: Vec<TemplateElement<'a>>,
-    /// Elements by name.
+    /// Indices into `elements`, by name.
     pub by_name: FxHashMap<Symbol, u32>,
-    /// The built-in type this class is a kind of.
+    /// The predefined type that this class specializes, as `Real` for `type Length = Real(unit = "m")`.
     pub builtin: Option<BuiltinType>,
-    /// Attribute modifications along the chain of types, outermost first.
+    /// Modifiers of attributes along the chain of types, outermost first.
     pub builtin_args: Vec<ExtendsModification<'a>>,
-    /// What is modified of a base class where it was found, with the index of that base, outermost first: a class element
-    /// carries the modifiers of its `constrainedby` and of the component or package that holds it.
+    /// Modifiers that a base class already had where it was found, outermost first, with the index of that base.
+    /// They come from its `constrainedby` clause and from the component or package in which it was found.
     pub base_args: Vec<(u32, Modifier<'a>)>,
-    /// Array dimensions of a type such as `type Triple = Real[3]`, outermost last.
+    /// Array dimensions of a type such as `type Triple = Real[3]`, with the base that declares them.
+    /// If several types along the chain have dimensions, the class itself comes first.
     pub dims: Vec<(&'a [ast::Subscript], u32)>,
-    /// Prefixes of a short class (`connector In = input Real`).
+    /// Prefixes of a short class: `input` in `connector In = input Real`.
     pub prefix: ast::TypePrefix,
-    /// The class that says what is inside: itself, or the end of a chain of short classes.
+    /// The kind in the class definition as written: model, record, connector and so on.
     pub kind: ast::ClassKind,
-    /// An `extends` could not be resolved, so names may be missing through no fault of the user.
+    /// A base class was not found or the bases form a cycle. Names may be missing, so messages about them are left out.
     pub broken: bool,
 }
 
-/// A class that contributes elements, equations and a place to look up names.
+/// A class that contributes elements and equations, and a place from which to look up names.
 #[derive(Clone)]
 pub struct BaseClass<'a> {
     /// The class.
     pub class: ClassId,
-    /// Its syntax.
+    /// Its syntax tree.
     pub ast: &'a ast::Class,
-    /// What lies around it. `None` when it stands inside the instance itself.
+    /// The place that encloses it. Lookup continues there when the class does not know a name.
     pub parent: LookupContext,
-    /// Names of elements that it knows, its own and inherited.
+    /// Names of the elements that it declares or inherits. Other elements of the instance are not visible from it.
     pub names: FxHashSet<Symbol>,
-    /// Its imports.
+    /// Its `import` clauses, which are not inherited (MLS 13.2.1).
     pub imports: Vec<&'a ast::Import>,
-    /// A short class: names in its modifiers mean what they mean around it.
+    /// True for every class without a body of its own (`model A = B(x = y)`). `y` means what it means around `A`.
     pub short: bool,
-    /// `connect` equations removed by `break` (with texts of both sides).
+    /// `connect` equations that `extends B(break connect(a, b))` removes: both arguments as written.
     pub broken_connects: Vec<(&'a ast::Expr, &'a ast::Expr)>,
-    /// Components removed by `break`; their connections go with them.
+    /// Components that `extends B(break x)` removes. Their `connect` equations are removed with them.
     pub broken_components: Vec<Symbol>,
 }
 
 impl Template<'_> {
-    /// A class that holds nothing.
+    /// A template without elements and bases.
+    /// It is the start of every template, and the complete one of scopes that hold nothing, such as the top level.
+    /// `kind` is the kind that the class definition states.
     pub(in crate::instance) fn empty(class: ClassId, kind: ast::ClassKind) -> Self {
         Template {
             class,
@@ -82,7 +90,9 @@ impl Template<'_> {
         matches!(self.kind, ast::ClassKind::Connector { expandable: true })
     }
 
-    /// Whether a class holds what a package holds: classes and constants. Other kinds than models are never used as one.
+    /// Whether a class holds only what a package may hold, classes and constants.
+    /// It holds too for every class that is no model, block or `class`: these are not checked.
+    /// A dotted name may reach a class inside such a class (MLS 5.3.2).
     pub(in crate::instance) fn is_package(&self) -> bool {
         let model = matches!(self.kind, ast::ClassKind::Model | ast::ClassKind::Block | ast::ClassKind::Class);
         let constant = |e: &TemplateElement<'_>| match e.kind {
@@ -94,7 +104,10 @@ impl Template<'_> {
 }
 
 impl<'a> BaseClass<'a> {
-    /// A class before its elements are known.
+    /// A base whose elements and imports are not entered yet.
+    ///
+    /// Names, imports and removals by `break` are entered while the class is gathered.
+    /// A class without a body of its own is marked `short`.
     pub(in crate::instance) fn of(class: ClassId, ast: &'a ast::Class, parent: LookupContext) -> Self {
         BaseClass {
             class,
@@ -109,24 +122,24 @@ impl<'a> BaseClass<'a> {
     }
 }
 
-/// One element.
+/// One element of a class.
 #[derive(Clone)]
 pub struct TemplateElement<'a> {
-    /// Its name.
+    /// The name it is declared with.
     pub name: Symbol,
-    /// What it is.
+    /// The declaration.
     pub kind: TemplateElementKind<'a>,
-    /// The base it is declared in.
+    /// The base that declares it: index into `Template::bases`.
     pub base: u32,
-    /// Modifications by `extends` clauses, outermost first.
+    /// Modifiers and redeclarations by classes that inherit it, outermost first.
     pub modified: Vec<ExtendsModification<'a>>,
-    /// In a protected section.
+    /// Declared in a protected section.
     pub protected: bool,
-    /// Where it stands.
+    /// The declaration in the text, for messages.
     pub span: Span,
 }
 
-/// A component or a class.
+/// The declaration of an element, as it was first declared; redeclarations are in `modified`.
 #[derive(Clone, Copy)]
 pub enum TemplateElementKind<'a> {
     /// A component.
@@ -135,12 +148,12 @@ pub enum TemplateElementKind<'a> {
     Class(&'a ast::Class),
 }
 
-/// A modification written in one of the bases.
+/// A modifier that a class writes for an element that it inherits.
 #[derive(Clone, Copy)]
 pub struct ExtendsModification<'a> {
-    /// What it is.
+    /// Its form and its syntax.
     pub what: ExtendsModificationKind<'a>,
-    /// The base whose names it uses.
+    /// The base in which it is written, whose names it uses.
     pub base: u32,
 }
 
@@ -155,15 +168,23 @@ pub enum ExtendsModificationKind<'a> {
     Class(&'a ast::Class),
 }
 
-/// The longest chain of `extends`, and the most classes whose bases or constraints are being looked up inside each other.
+/// Limit of two depths: the length of a chain of `extends`, and how many classes are looked up inside each other.
 pub(super) const DEEPEST: usize = 100;
 
-/// The most bases that are gathered for one class, those found on the way to them included: a class of a large library
-/// has some hundreds. What goes in circles many times over would take for ever before it is [`DEEPEST`].
+/// The most bases gathered for one class, including those of the classes that must be found on the way.
+/// A class of a large library has some hundreds. Cycles that branch would reach this number long before [`DEEPEST`]
+/// ends them.
 const MOST_BASES: usize = 20_000;
 
 impl<'a> NameLookup<'_, 'a, '_> {
-    /// The template of a class at a place.
+    /// The template of a class at a place. It is made at the first request and shared afterwards.
+    ///
+    /// Errors are reported, and the template is marked `broken` and may lack elements.
+    ///
+    /// `parent` is the place around the class. The same class at two places has two templates: its bases may be found
+    /// in different packages there, if these have been redeclared.
+    /// Looking up a base may need templates of other classes. Their number is limited, so that a cycle ends with a
+    /// message.
     pub fn template(&mut self, class: ClassId, parent: LookupContext) -> Rc<Template<'a>> {
         if let Some(t) = self.instance.classes.templates.get(&(class, parent)) {
             return t.clone();
@@ -173,6 +194,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         if self.instance.classes.gathering.is_empty() {
             self.instance.classes.gathered = 0;
         }
+        // Base lookup may need the template of another class, so it can nest; too deep a nest has no end.
         if self.instance.classes.gathering.len() < DEEPEST {
             self.instance.classes.gathering.push((class, parent));
             self.gather(&mut t, class, parent, &mut Vec::new());
@@ -187,13 +209,21 @@ impl<'a> NameLookup<'_, 'a, '_> {
         t
     }
 
+    /// The classes whose bases are being looked up, innermost last.
     fn gathered_now(&self) -> Vec<ClassId> {
         self.instance.classes.gathering.iter().map(|&(class, _)| class).collect()
     }
 
-    /// A class whose own lookup asks for further ones without end: those being looked up, innermost last.
+    /// Reports that looking up `class` requires further classes without end.
+    /// `what` is "base" or "constraining"; `around` lists the classes being looked up, innermost last.
+    ///
+    /// ```text
+    /// package A extends B.C; end A;
+    /// package B extends A.D; end B;
+    /// ```
     pub(super) fn endless_lookup(&mut self, what: &str, class: ClassId, around: &[ClassId]) {
         let mut circle: Vec<String> = Vec::new();
+        // Only the innermost part up to the first repetition is shown: that is the cycle.
         for &c in around.iter().rev() {
             let name = self.instance.library.full_name(c);
             if circle.contains(&name) {
@@ -211,10 +241,21 @@ impl<'a> NameLookup<'_, 'a, '_> {
         );
     }
 
-    /// Adds a class and what it extends to the template; returns the index of its base.
+    /// Adds a class and what it extends to the template, and returns the index of its base.
+    ///
+    /// `chain` holds the classes from the outermost one to the one that extends `class`, to find cycles.
+    ///
+    /// The class is entered first, then checked for what its kind may hold, then its elements and bases follow.
+    /// - A class with a body: each element, import and `extends` clause in the order of the text.
+    /// - A short class `type T = B[3](x = 1)`: its prefixes and dimensions, then `B` like a base.
+    /// - An enumeration: its type is noted.
+    /// - `function f = der(g, x)` is not supported.
+    ///
+    /// The result is the index of the entered class in `Template::bases`. It is returned even after a message.
     fn gather(&mut self, t: &mut Template<'a>, class: ClassId, parent: LookupContext, chain: &mut Vec<ClassId>) -> u32 {
         let ast = self.instance.library.class(class);
         let base = u32::try_from(t.bases.len()).expect("fewer than 2^32 bases");
+        // The class is entered before its bases, so that it has a lower number than they have.
         t.bases.push(BaseClass::of(class, ast, parent));
         if chain.contains(&class) || chain.len() > DEEPEST {
             let name = self.instance.library.full_name(class);
@@ -234,7 +275,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
         self.instance.builder().check_class(class);
         self.instance.classes.gathered += 1;
-        // reported once, and then not tried to its end again
+        // After the first report the limit is low: other classes of the same cycle would take as long again.
         let most = if self.instance.classes.tangled { DEEPEST } else { MOST_BASES };
         if self.instance.classes.gathered > most {
             if !self.instance.classes.tangled {
@@ -261,7 +302,13 @@ impl<'a> NameLookup<'_, 'a, '_> {
         base
     }
 
+    /// Adds the elements of a class with a body (`class A ... end A`) in the order of the text.
+    ///
+    /// Nested classes get a number in the library, because modifiers and lookups refer to classes by number.
+    /// A `redeclare` element does not add anything: it is attached to the inherited element of that name.
+    /// `base` is the index of the class, to which its names and imports are added.
     fn gather_long(&mut self, t: &mut Template<'a>, base: u32, body: &'a ast::LongBody, chain: &mut Vec<ClassId>) {
+        // `redeclare model extends M`: the replaced class is a base like that of an `extends` clause (MLS 7.3.1).
         if let Some(modification) = &body.class_extends {
             let (ast, parent) = (t.bases[base as usize].ast, t.bases[base as usize].parent);
             let arguments = modification.as_ref().map_or(&[][..], |m| m.arguments.as_slice());
@@ -297,6 +344,17 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
+    /// Enters one declaration, or attaches it to the inherited element that it redeclares.
+    ///
+    /// An element may be inherited twice if both declarations agree (MLS 5.6.1.2). Every other repetition is an error.
+    ///
+    /// - A new name becomes an element. With `redeclare` this is an error, because there is nothing to redeclare.
+    /// - A known name with `redeclare` becomes the outermost redeclaration of the inherited element. Its visibility
+    ///   must be the same, and an earlier redeclaration must be `replaceable` (MLS 7.3).
+    /// - A known name without `redeclare` must be declared alike, otherwise it is reported as a duplicate.
+    ///
+    /// `base` is the class in which the declaration stands. Public or protected is a property of the section, so it
+    /// comes from `element`.
     fn add_element(
         &mut self,
         t: &mut Template<'a>,
@@ -321,6 +379,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
                 );
                 return;
             }
+            // An earlier redeclaration without `replaceable` closes the element to the ones further out.
             let closed = t.elements[i as usize].modified.first().is_some_and(|s| match s.what {
                 ExtendsModificationKind::Class(c) => s.base != base && !c.prefixes.replaceable,
                 ExtendsModificationKind::Component(c) => s.base != base && !c.prefixes.replaceable,
@@ -343,6 +402,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
                     TemplateElementKind::Component(c) => ExtendsModificationKind::Component(c),
                     TemplateElementKind::Class(c) => ExtendsModificationKind::Class(c),
                 };
+                // This class is further out than all that modified the element so far, so its redeclaration comes
+                // first.
                 old.modified.insert(0, ExtendsModification { what, base });
             } else if old.base == base || !same_declaration(old.kind, kind) {
                 self.duplicate(t, i, name);
@@ -372,6 +433,9 @@ impl<'a> NameLookup<'_, 'a, '_> {
         });
     }
 
+    /// Reports that a class declares a name twice.
+    ///
+    /// `old` is the index of the element that is there already. Both places are shown in the message.
     fn duplicate(&mut self, t: &Template<'a>, old: u32, name: ast::Ident) {
         let class = self.instance.library.full_name(t.class);
         let first = match t.elements[old as usize].kind {
@@ -387,6 +451,14 @@ impl<'a> NameLookup<'_, 'a, '_> {
         );
     }
 
+    /// Adds the class named in an `extends` clause or a short class definition, with its modifiers.
+    /// `base` is the class in which the clause stands.
+    ///
+    /// For a predefined type, `type Length = Real(unit = "m")`, the modifiers are kept as attributes.
+    /// For a class they are attached to the elements that they name.
+    /// An unknown base is reported, and the template is marked `broken`, so that names from it are not reported too.
+    /// `chain` holds the classes that are being gathered.
+    /// A base that fits the kind of the class is required by MLS 7.1.3, which is checked here.
     fn gather_extends(
         &mut self,
         t: &mut Template<'a>,
@@ -404,6 +476,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
                 }
                 t.builtin = Some(b);
                 let sources =
+                    // Bases are entered from outside inwards, so appending keeps the order outermost first.
                     arguments.iter().map(|a| ExtendsModification { what: ExtendsModificationKind::Argument(a), base });
                 t.builtin_args.extend(sources);
             }
@@ -414,6 +487,8 @@ impl<'a> NameLookup<'_, 'a, '_> {
                 }
                 let shaped = t.dims.len();
                 self.gather_base(t, base, &found, arguments, chain);
+                // Only a short class may add dimensions; `extends` of an array type is an error for a class with
+                // elements.
                 if long && t.dims.len() > shaped && t.builtin.is_none() {
                     self.instance.builder().check_array_base(class, path.span);
                 }
@@ -426,6 +501,11 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
+    /// Adds a base class that was found, and attaches `arguments` to the elements that it brings.
+    ///
+    /// Modifiers that the base has brought along from where it was found are kept in `base_args`.
+    /// If the base turns out to be a predefined type, `arguments` become attributes and stand before those of the base.
+    /// At the end the class knows all names that the base knows.
     fn gather_base(
         &mut self,
         t: &mut Template<'a>,
@@ -447,9 +527,23 @@ impl<'a> NameLookup<'_, 'a, '_> {
         } else {
             self.modify_inherited(t, base, inner, arguments);
         }
+        // Only now does the class itself know the names: they were not visible while its base was looked up.
         t.bases[base as usize].names.extend(names);
     }
 
+    /// Attaches the modifiers of an `extends` clause to the inherited elements that they name.
+    /// `inner` is the base that the clause names, `base` the class in which it stands.
+    ///
+    /// ```text
+    /// extends B(x = 1, redeclare model M = N, break y, break connect(a, b));
+    /// ```
+    ///
+    /// - Modifiers and redeclarations are put in front of those that are there, since they are further out.
+    /// - `break` of a component or connection is applied at once (MLS 7.4).
+    /// - A name that the base does not have is reported, unless a base is missing.
+    /// - An element that comes through two equal `extends` clauses takes the modifier once (MLS 5.6.1.2).
+    ///
+    /// The modifiers of one clause keep their order among each other.
     fn modify_inherited(
         &mut self,
         t: &mut Template<'a>,
@@ -457,6 +551,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         inner: u32,
         arguments: &'a [ast::ModificationArgument],
     ) {
+        // How many modifiers of this clause each element has: they go in front of inner ones and keep their order.
         let mut at: FxHashMap<Symbol, usize> = FxHashMap::default();
         for argument in arguments {
             let target = match &argument.kind {
@@ -472,6 +567,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
                         let class = self.instance.library.full_name(t.bases[inner as usize].class);
                         self.instance.unknown_connection(a, b, &class);
                     }
+                    // The base does not know which of its own bases has the equation, so all below it get the entry.
                     for i in inner as usize..t.bases.len() {
                         t.bases[i].broken_connects.push((a, b));
                     }
@@ -497,6 +593,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
                     );
                     *place += 1;
                 }
+                // A base is missing: the name may belong to it, and the missing base has its own message.
                 None if t.broken => {}
                 None => {
                     let class = self.instance.library.full_name(t.bases[inner as usize].class);
@@ -507,8 +604,19 @@ impl<'a> NameLookup<'_, 'a, '_> {
         }
     }
 
-    /// The inherited class that `redeclare model extends M` takes the place of and extends (MLS 7.3.1): the declaration,
-    /// or the redeclaration nearest to it, below the one that is given.
+    /// The inherited class that `redeclare model extends M` replaces and extends (MLS 7.3.1).
+    ///
+    /// This is the next redeclaration further in than the class `ast`, or else the first declaration.
+    /// `None` if the surroundings have no such element, which has its own message.
+    ///
+    /// ```text
+    /// package P extends Q;
+    ///   redeclare model extends M ... end M;   // extends the M of Q
+    /// end P;
+    /// ```
+    ///
+    /// While the bases of the surrounding package are looked up, its template is not known yet. The package is then
+    /// looked up again from its text.
     fn replaced_class(&mut self, ast: &'a ast::Class, parent: LookupContext) -> Option<ClassRef<'a>> {
         let mut scope = parent.scope;
         let mut holder = self.instance.scope(scope).template.clone();
@@ -523,6 +631,7 @@ impl<'a> NameLookup<'_, 'a, '_> {
         let TemplateElementKind::Class(declared) = element.kind else { return None };
         let own =
             |s: &ExtendsModification<'a>| matches!(s.what, ExtendsModificationKind::Class(c) if std::ptr::eq(c, ast));
+        // The entries after the own one are further in; the class extends the nearest of them.
         let below = element.modified.iter().position(own)? + 1;
         let redeclared = element.modified[below..].iter().find_map(|s| match s.what {
             ExtendsModificationKind::Class(c) => Some((c, s.base)),
@@ -537,11 +646,15 @@ impl<'a> NameLookup<'_, 'a, '_> {
         Some(ClassRef { class, parent: LookupContext { scope, base }, args: Rc::from([]) })
     }
 
-    /// Selective extension (Modelica 3.6, 7.4): `extends B(break x)` leaves out `x` and its connections.
+    /// Applies `extends B(break x)` (MLS 7.4): removes `x`, and notes that its connections are to be removed.
+    ///
+    /// The element must come from the base `inner`. A name that is not there is reported.
+    /// Later elements move down by one, so the table of names is made again.
     fn break_component(&mut self, t: &mut Template<'a>, inner: u32, name: ast::Ident) {
         match t.by_name.remove(&name.name) {
             Some(i) => {
                 t.elements.remove(i as usize);
+                // Removal moves all later elements down by one.
                 t.by_name = (0u32..).zip(&t.elements).map(|(i, e)| (e.name, i)).collect();
                 for base in &mut t.bases[inner as usize..] {
                     base.names.remove(&name.name);
@@ -557,8 +670,11 @@ impl<'a> NameLookup<'_, 'a, '_> {
     }
 }
 
-/// Whether a class connects two ports, written so.
+/// Whether the equations of a class contain this connection, also inside `if` and `for` equations.
+/// The texts of both ports are compared, so `a[1 + 1]` and `a[2]` are different connections here.
+/// Connections in the bases of the class are not searched; the caller goes through all bases.
 fn connects(class: &ast::Class, pair: (&ast::Expr, &ast::Expr)) -> bool {
+    /// Searches some equations and those nested in them. `when` equations contain no connections.
     fn among(equations: &[ast::Equation], pair: (&ast::Expr, &ast::Expr)) -> bool {
         equations.iter().any(|equation| match &equation.kind {
             ast::EquationKind::Connect(a, b) => same_pair((a, b), pair),
@@ -572,14 +688,15 @@ fn connects(class: &ast::Class, pair: (&ast::Expr, &ast::Expr)) -> bool {
     matches!(&class.body, ClassBody::Long(body) if among(&body.equations, pair))
 }
 
-/// Whether two pairs of ports are written alike, subscripts included (MLS 7.4).
+/// Whether two connections are written alike, subscripts included, in either order of their ports (MLS 7.4).
 pub fn same_pair(a: (&ast::Expr, &ast::Expr), b: (&ast::Expr, &ast::Expr)) -> bool {
     let text = |pair: (&ast::Expr, &ast::Expr)| (pair.0.to_string(), pair.1.to_string());
     let (a, b) = (text(a), text(b));
     a == b || (a.0 == b.1 && a.1 == b.0)
 }
 
-/// Whether two declarations of one name say the same, as inheriting an element twice requires (MLS 5.6.1.2).
+/// Whether two declarations of one name agree, as inheriting an element twice requires (MLS 5.6.1.2).
+/// Only the last part of the class name, the prefixes and the number of dimensions are compared.
 fn same_declaration(a: TemplateElementKind<'_>, b: TemplateElementKind<'_>) -> bool {
     match (a, b) {
         (TemplateElementKind::Component(a), TemplateElementKind::Component(b)) => {
@@ -591,14 +708,17 @@ fn same_declaration(a: TemplateElementKind<'_>, b: TemplateElementKind<'_>) -> b
     }
 }
 
-/// Whether two short classes are declared alike, as in `replaceable package Medium = Media.PartialMedium`.
+/// Whether two short classes are declared alike: same kind, same last part of the class name.
 fn same_short_class(a: &ast::Class, b: &ast::Class) -> bool {
     let (ClassBody::Short { base: x, .. }, ClassBody::Short { base: y, .. }) = (&a.body, &b.body) else { return false };
     let last = |p: &ast::Path| p.parts.last().map(|i| i.name);
     a.kind == b.kind && last(x) == last(y)
 }
 
-/// Whether a modifier of an element says what another one says already.
+/// Whether two modifiers of an element are written alike, inner modifiers included.
+/// Redeclarations never count as equal.
+///
+/// Path, value and nested modifiers must agree in text. Prefixes such as `each` and `final` are not compared.
 fn says_the_same(a: &ast::ModificationArgument, b: &ast::ModificationArgument) -> bool {
     let (
         ModificationArgumentKind::Modify { path: p, modification: x, .. },

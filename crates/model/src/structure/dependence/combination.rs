@@ -1,4 +1,8 @@
-//! A combination of equations as an equation.
+//! A linear combination of equations as a new equation.
+//!
+//! Enters: rows that `elimination` found to be dependent. Leaves: the sum of their equations with symbolic factors,
+//! written in the place of one of them. `expose` in the parent module calls [`EquationCombination::new`],
+//! `contradiction` and `write`.
 
 use super::super::draft::{DaeDraft, SystemRole};
 use super::super::pantelides::IndexReduction;
@@ -14,18 +18,21 @@ use bramah_syntax::diag::Diagnostic;
 
 /// The sum of some equations, each differentiated so often that their derivatives of highest order cancel.
 pub(super) struct EquationCombination {
-    /// The rows of the Jacobian that take part.
+    /// The rows of the Jacobian that take part, ascending.
     pub rows: Vec<usize>,
-    /// The one whose place the sum takes.
+    /// The row whose equation the sum replaces.
     pub replaced: usize,
-    /// Unknowns and their derivatives with their factors.
+    /// Unknowns and their derivatives with their factors. Like terms are added up.
     terms: Vec<(ChainPosition, Monomial)>,
-    /// All other terms, how often they are differentiated, and their factors.
+    /// All other terms, each with how often it is differentiated, and their factors.
     rest: Vec<((ExprId, u32), Monomial)>,
 }
 
 impl EquationCombination {
-    /// `None` where the rows depend on each other by values only: of what changes, or of parameters that may not be fixed.
+    /// Adds up the rows of a combination. `fixable` allows parameters to be fixed.
+    ///
+    /// `None` where the rows depend on each other by values only (of what changes, or of parameters that may not be
+    /// fixed), where no row can be replaced, or where the sum still contains a derivative of highest order.
     pub fn new(
         draft: &mut DaeDraft,
         known: &mut SignAnalysis,
@@ -39,18 +46,21 @@ impl EquationCombination {
         let factors = factors(draft, known, jacobian, found, &mut linear, fixable)?;
         let offsets = || rows.iter().map(|&row| jacobian.offsets[row]);
         let least = offsets().min()?;
+        // The replaced row must have the smallest offset, so that the others need only be differentiated, and a factor
+        // that cannot vanish, so that no solution is gained or lost.
         let mut may_be = |i: &usize| {
             let [factor]: &[Monomial] = &factors[*i] else { return false };
             jacobian.offsets[rows[*i]] == least && factor.expressions().all(|e| known.is_nonzero(&draft.exprs, e))
         };
         let is_number = |i: &usize| factors[*i].iter().all(Monomial::is_number);
+        // A numeric factor is preferred to an expression; the last such row is taken.
         let place = (0..rows.len()).rev().find(|i| is_number(i) && may_be(i));
         let place = place.or_else(|| (0..rows.len()).rev().find(may_be))?;
         let mut made =
             EquationCombination { replaced: rows[place], terms: Vec::new(), rest: Vec::new(), rows: rows.clone() };
         for ((offset, linear), factors) in offsets().zip(&linear).zip(&factors) {
             let times = offset - least;
-            // its derivative would have more terms
+            // The derivative of a product with a varying factor would have more terms than are handled here.
             let varying = |e: ExprId| known.value(&draft.exprs, e).is_none();
             if times > 0 && linear.terms.iter().flat_map(|t| t.1.expressions()).any(varying) {
                 return None;
@@ -67,7 +77,8 @@ impl EquationCombination {
         made.is_lower(draft, known, (jacobian, reduction), least).then_some(made)
     }
 
-    /// Whether no derivative of highest order is left, not in factors either.
+    /// Whether no derivative of highest order is left, neither in terms nor in factors. `offset` is that of the
+    /// replaced row.
     fn is_lower(
         &self,
         draft: &DaeDraft,
@@ -85,7 +96,8 @@ impl EquationCombination {
             && parts.all(|(e, offset)| !jacobian.holds_highest(draft, reduction, e, offset))
     }
 
-    /// What is left where that holds no unknown: 0 where the equations say the same, else what would have to be 0.
+    /// What is left where the sum contains no unknown: 0 where the equations repeat each other, else an expression that
+    /// would have to be 0. `None` where the sum is an equation for unknowns.
     pub fn contradiction(&self, draft: &mut DaeDraft) -> Option<ExprId> {
         let mut sum = Exprs::ZERO;
         for ((e, times), factor) in &self.rest {
@@ -101,7 +113,8 @@ impl EquationCombination {
         self.terms.is_empty().then_some(sum)
     }
 
-    /// Puts the sum in the place of an equation.
+    /// Writes the sum in the place of equation `at`. Adds the derivatives that it needs. `Err` where one does not exist
+    /// (E304).
     pub fn write(&self, draft: &mut DaeDraft, reduction: &mut IndexReduction, at: usize) -> Result<(), Diagnostic> {
         let equation = draft.equations[at];
         let mut sum = Exprs::ZERO;
@@ -126,7 +139,7 @@ impl EquationCombination {
     }
 }
 
-/// Adds a term to the like one, if there is one; what cancels goes.
+/// Adds a term to the like one, if there is one. Terms that cancel are removed.
 fn add_to<T: PartialEq>(terms: &mut Vec<(T, Monomial)>, of: T, factor: Monomial) {
     let Some(at) = terms.iter().position(|t| t.0 == of && t.1.is_like(&factor)) else {
         return terms.push((of, factor));
@@ -137,8 +150,11 @@ fn add_to<T: PartialEq>(terms: &mut Vec<(T, Monomial)>, of: T, factor: Monomial)
     }
 }
 
-/// The factors by which rows add up to 0 whatever their expressions are worth. Where they do so only with the parameters as
-/// they are, these are fixed if they may be.
+/// The factors by which rows add up to 0, one sum for each row.
+///
+/// First choice are factors that hold whatever the expressions in the rows are worth. Where rows depend on each other
+/// only with the parameters as they are, these parameters are fixed if that is allowed, and the factors are numbers.
+/// `None` where neither is possible.
 fn factors(
     draft: &mut DaeDraft,
     known: &mut SignAnalysis,
@@ -151,6 +167,7 @@ fn factors(
         found.iter().zip(&*linear).map(|(&(row, _), linear)| jacobian.entries(row, linear)).collect();
     let expressions: Vec<ExprId> = rows.iter().flatten().flat_map(|(_, factor)| factor.expressions()).collect();
     let numbers = || found.iter().map(|&(_, factor)| vec![Monomial::number(factor)]).collect();
+    // All entries are numbers, so the factors of the elimination are exact up to rounding.
     if expressions.is_empty() {
         return Some(numbers());
     }
@@ -162,6 +179,7 @@ fn factors(
     }
     let parameters = draft.exprs.dependencies(&expressions).vars;
     parameters::fix(draft, &parameters);
+    // With fixed parameters their factors are numbers; else like terms would not cancel.
     for factor in linear.iter_mut().flat_map(|l| &mut l.terms).map(|term| &mut term.1) {
         if factor.expressions().all(|e| known.value(&draft.exprs, e).is_some()) {
             *factor = Monomial::number(factor.value(draft, known));

@@ -1,22 +1,27 @@
-//! Which rows of a sparse matrix are sums of others.
+//! Gaussian elimination of a sparse matrix of numbers: which rows are linear combinations of others.
+//!
+//! Enters: rows with numeric entries. Leaves: the combinations of rows that vanish. The parent module calls
+//! [`vanishing`] and [`following`].
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-/// A difference below this part of what it comes from is rounding: coefficients such as `cos(2*pi/3)` or `2/3` are right to
-/// sixteen digits, their products to a few less, and no two values that an engineer means to differ agree in ten.
+/// A difference below this part of the numbers it comes from is rounding. Coefficients such as `cos(2*pi/3)` or `2/3`
+/// are right to sixteen digits, their products to a few less, and no two values that an engineer means to differ agree
+/// in ten.
 pub(super) const CANCELLED: f64 = 1e-10;
 
-/// A pivot is at least this part of the largest entry of its column.
+/// A pivot is at least this part of the largest entry of its column (threshold pivoting): small enough to leave a
+/// choice of sparse rows, large enough to bound the growth of errors.
 const LARGE: f64 = 0.1;
 
-/// A row: columns, ascending, with their values.
+/// A row: columns in ascending order, with their values.
 pub(super) type EliminationRow = Vec<(u32, f64)>;
 
-/// Rows, ascending, that add up to 0 with these factors; all but one of them are independent.
+/// Rows in ascending order that add up to 0 with these factors. All but one of them are independent.
 pub(super) type RowCombination = Vec<(usize, f64)>;
 
-/// The combinations of rows that vanish, as many as there are rows too many.
+/// The combinations of rows that vanish: as many as the number of rows exceeds the rank.
 pub(super) fn vanishing(rows: &[EliminationRow], columns: usize) -> Vec<RowCombination> {
     let mut elimination = NumericElimination::new(rows, columns);
     while let Some((row, column)) = elimination.next_pivot() {
@@ -26,7 +31,7 @@ pub(super) fn vanishing(rows: &[EliminationRow], columns: usize) -> Vec<RowCombi
     empty.map(|row| elimination.combination(row)).collect()
 }
 
-/// The last row of each combination that vanishes, each once: one row may be the last of several.
+/// The last row of each combination that vanishes. Ascending, each once: one row may be the last of several.
 pub(super) fn following(rows: &[EliminationRow], columns: usize) -> Vec<usize> {
     let last = |combination: RowCombination| combination.last().map(|term| term.0);
     let mut found: Vec<usize> = vanishing(rows, columns).into_iter().filter_map(last).collect();
@@ -35,28 +40,31 @@ pub(super) fn following(rows: &[EliminationRow], columns: usize) -> Vec<usize> {
     found
 }
 
-/// Gaussian elimination of the column that the fewest rows hold: one that a single row holds takes that row out for nothing,
-/// so that in most models little is left to do.
+/// The state of the elimination. It eliminates the column that the fewest rows contain (after H. M. Markowitz): a
+/// column in a single row removes that row without any work, so that in most models little is left to do.
 struct NumericElimination {
-    /// What is left of each row, scaled to a largest entry of 1.
+    /// By row: what is left of it, scaled to a largest entry of 1.
     rows: Vec<EliminationRow>,
+    /// By row: the largest entry before scaling.
     scale: Vec<f64>,
-    /// Whether a row has not been a pivot yet.
+    /// By row: whether it has not been a pivot yet.
     active: Vec<bool>,
-    /// By column: rows that hold it, and some that do not any more.
+    /// By column: rows that contain it, and some that do not any more.
     users: Vec<Vec<u32>>,
-    /// How many active rows hold a column.
+    /// By column: how many active rows contain it.
     count: Vec<usize>,
-    /// Columns by count; old entries stay.
+    /// Columns by count. Outdated entries stay and are skipped.
     queue: BinaryHeap<Reverse<(usize, u32)>>,
-    /// By row: pivot rows with the factors by which they were subtracted, in order.
+    /// By row: pivot rows with the factors by which they were subtracted from it, in order.
     subtracted: Vec<Vec<(u32, f64)>>,
-    /// By row: which pivot it was.
+    /// By row: its number among the pivots, or `usize::MAX`.
     rank: Vec<usize>,
+    /// Pivot rows in the order in which they were chosen.
     pivots: Vec<u32>,
 }
 
 impl NumericElimination {
+    /// Scales the rows and counts the users of each column.
     fn new(rows: &[EliminationRow], columns: usize) -> Self {
         let largest = |row: &EliminationRow| row.iter().fold(0.0, |m: f64, e| m.max(e.1.abs()));
         let scale: Vec<f64> = rows.iter().map(|row| if row.is_empty() { 1.0 } else { largest(row) }).collect();
@@ -81,14 +89,17 @@ impl NumericElimination {
         }
     }
 
+    /// The entry of a row in a column; `None` where there is none. Binary search.
     fn value(&self, row: u32, column: u32) -> Option<f64> {
         let row = &self.rows[row as usize];
         row.binary_search_by_key(&column, |entry| entry.0).ok().map(|at| row[at].1)
     }
 
-    /// The shortest of the rows with a large entry in the column that the fewest rows hold.
+    /// The next pivot: among the rows with a large entry in the column that the fewest rows contain, the shortest.
+    /// `None` when all remaining rows are empty.
     fn next_pivot(&mut self) -> Option<(u32, u32)> {
         while let Some(Reverse((count, column))) = self.queue.pop() {
+            // The count has changed since the entry was queued; there is a newer entry.
             if count != self.count[column as usize] || count == 0 {
                 continue;
             }
@@ -108,7 +119,7 @@ impl NumericElimination {
         None
     }
 
-    /// Takes the column out of all other rows.
+    /// Eliminates the column of the pivot from all other rows and makes the pivot row inactive.
     fn eliminate(&mut self, pivot: u32, column: u32) {
         self.active[pivot as usize] = false;
         self.rank[pivot as usize] = self.pivots.len();
@@ -127,12 +138,14 @@ impl NumericElimination {
         }
     }
 
+    /// Notes that one row less contains a column.
     fn count_down(&mut self, column: u32) {
         self.count[column as usize] -= 1;
         self.queue.push(Reverse((self.count[column as usize], column)));
     }
 
-    /// Subtracts a multiple of a pivot; what cancels goes, and the eliminated column surely.
+    /// Subtracts a multiple of a pivot from a row: a merge of two sorted lists. Entries that cancel up to rounding are
+    /// removed, and that of the eliminated column always.
     fn subtract(&mut self, row: u32, pivot: &EliminationRow, factor: f64, column: u32) {
         let old = std::mem::take(&mut self.rows[row as usize]);
         let mut made = EliminationRow::with_capacity(old.len() + pivot.len());
@@ -154,6 +167,7 @@ impl NumericElimination {
                     a.next();
                     b.next();
                 }
+                // Fill-in: the row did not contain this column before.
                 (_, Some(&&(d, y))) => {
                     made.push((d, -factor * y));
                     self.users[d as usize].push(row);
@@ -167,7 +181,8 @@ impl NumericElimination {
         self.rows[row as usize] = made;
     }
 
-    /// Traces what was subtracted from a row of which nothing is left back to the rows as they were.
+    /// The combination of the given rows that an empty row stands for: what was subtracted is traced back to the rows
+    /// as they were. The largest factor is 1 in size.
     fn combination(&self, row: usize) -> RowCombination {
         let mut open: BTreeMap<usize, f64> = BTreeMap::new();
         let subtract = |open: &mut BTreeMap<usize, f64>, of: usize, by: f64| {
@@ -177,6 +192,7 @@ impl NumericElimination {
         };
         subtract(&mut open, row, 1.0);
         let mut found = vec![(row, self.scale[row].recip())];
+        // Later pivots first: what is subtracted from a pivot row refers to earlier pivots only.
         while let Some((rank, factor)) = open.pop_last() {
             let pivot = self.pivots[rank] as usize;
             if factor.abs() > CANCELLED {

@@ -1,21 +1,26 @@
 //! Equations as sums: factors times unknowns and their derivatives, and a rest.
+//!
+//! [`LinearForm`] reads an equation, [`Monomial`] is a factor. The other files of `dependence` compute with them.
 
 use super::super::draft::DaeDraft;
 use super::super::parameters::SignAnalysis;
 use super::offsets::ChainPosition;
 use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction};
 
-/// A number times powers of expressions: of parameters, or of what changes, such as a density.
+/// A number times integer powers of expressions: of parameters, or of what changes, such as a density.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Monomial {
+    /// The numeric part.
     pub number: f64,
-    /// Ascending; no exponent is 0.
+    /// Expressions with their exponents, in ascending order of expressions. No exponent is 0.
     powers: Vec<(ExprId, i32)>,
 }
 
 impl Monomial {
+    /// The factor 1.
     pub const ONE: Monomial = Monomial::number(1.0);
 
+    /// A factor that is a number.
     pub const fn number(number: f64) -> Self {
         Monomial { number, powers: Vec::new() }
     }
@@ -25,22 +30,25 @@ impl Monomial {
         Monomial { number: 1.0, powers: vec![(e, 1)] }
     }
 
+    /// The factor with another numeric part.
     pub fn with_number(self, number: f64) -> Self {
         Monomial { number, ..self }
     }
 
+    /// The factor with the opposite sign.
     pub fn negative(mut self) -> Self {
         self.number = -self.number;
         self
     }
 
-    /// Times another one, or divided by it where `exponent` is -1.
+    /// The product with another factor, or the quotient where `exponent` is -1.
     pub fn times(mut self, other: &Monomial, exponent: i32) -> Self {
         self.number *= other.number.powi(exponent);
         other.powers.iter().for_each(|&(e, power)| self.raise(e, power * exponent));
         self
     }
 
+    /// The product with a power of an expression. A number goes into the numeric part.
     fn times_expression(mut self, pool: &Exprs, e: ExprId, exponent: i32) -> Self {
         match pool.as_num(e) {
             Some(number) => self.number *= number.powi(exponent),
@@ -49,6 +57,7 @@ impl Monomial {
         self
     }
 
+    /// Adds to the exponent of an expression.
     fn raise(&mut self, e: ExprId, exponent: i32) {
         match self.powers.binary_search_by_key(&e, |power| power.0) {
             Ok(at) => {
@@ -61,29 +70,32 @@ impl Monomial {
         }
     }
 
-    /// Whether two of them differ by a number only.
+    /// Whether two factors differ by a number only.
     pub fn is_like(&self, other: &Monomial) -> bool {
         self.powers == other.powers
     }
 
+    /// Whether it contains no expression.
     pub fn is_number(&self) -> bool {
         self.powers.is_empty()
     }
 
-    /// The expressions that it is made of.
+    /// The expressions that it contains.
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
         self.powers.iter().map(|power| power.0)
     }
 
-    /// With the parameters as they stand in the model. What changes has some value that nothing else has, so that sums
-    /// cancel only where the same expressions do.
+    /// Its value with the parameters as they are. An expression that changes gets a value of its own, different from
+    /// that of any other expression, so that sums cancel only where the same expressions do.
     pub fn value(&self, draft: &DaeDraft, known: &mut SignAnalysis) -> f64 {
         self.powers.iter().fold(self.number, |product, &(e, exponent)| {
+            // Multiples of the golden ratio modulo 1, which never repeat.
             let some = || 1.0 + (f64::from(e.0 + 1) * 0.618_033_988_749_894_9).fract();
             product * known.value(&draft.exprs, e).unwrap_or_else(some).powi(exponent)
         })
     }
 
+    /// The factor as an expression of the pool.
     pub fn expression(&self, pool: &mut Exprs) -> ExprId {
         let number = pool.num(self.number);
         self.powers.iter().fold(number, |product, &(e, exponent)| {
@@ -95,17 +107,18 @@ impl Monomial {
     }
 }
 
-/// `lhs - rhs` of an equation.
+/// The terms of `lhs - rhs` of an equation.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LinearForm {
-    /// Unknowns and their derivatives with their factors; one may stand there more than once.
+    /// Unknowns and their derivatives with their factors. A place may occur more than once.
     pub terms: Vec<(ChainPosition, Monomial)>,
-    /// All other terms.
+    /// All other terms with their factors.
     pub rest: Vec<(ExprId, Monomial)>,
 }
 
 impl LinearForm {
-    /// `place` says which leaves are unknowns.
+    /// Splits an equation into terms. `place` gives the chain and order of a leaf that is an unknown; for other leaves
+    /// it is `None`. A product counts as a term of an unknown if one of its sides is the unknown.
     pub fn new(
         draft: &DaeDraft,
         known: &mut SignAnalysis,
@@ -141,6 +154,7 @@ impl LinearForm {
                     match (is_number(a), is_number(b), is_unknown(a), is_unknown(b)) {
                         (true, ..) => open.push(of(b, a)),
                         (_, true, ..) => open.push(of(a, b)),
+                        // Exactly one side is an unknown: the other side is its factor.
                         (_, _, false, true) => open.push(of(b, a)),
                         (_, _, true, false) => open.push(of(a, b)),
                         _ => found.rest.push((e, factor)),

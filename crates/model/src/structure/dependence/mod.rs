@@ -1,17 +1,22 @@
-//! Dependence between equations that their structure does not show.
+//! Linear dependence between equations that their structure does not show.
 //!
-//! `v1 = a - b`, `v2 = b - c` and `v3 = c - a` can be matched with `a`, `b` and `c`, yet their sum says `v1 + v2 + v3 = 0`: of
-//! three capacitors in a ring only two are states. Index reduction by structure differentiates a constraint only where it is
-//! written as one. So it is written here: where equations have a linear combination in which all derivatives of highest order
-//! cancel, the combination takes the place of that one of them which is differentiated least. Factors may be constants,
-//! parameters, and single expressions that change: where mass passes a node, `rho(p) q_a + m_a = 0`, `rho(p) q_b + m_b = 0` and
-//! `q_a + q_b = 0` say `m_a + m_b = 0`.
+//! `v1 = a - b`, `v2 = b - c` and `v3 = c - a` can be matched with `a`, `b` and `c`, yet their sum says `v1 + v2 + v3 =
+//! 0`: of three capacitors in a ring only two are states. Index reduction by structure differentiates a constraint only
+//! where it is written as one. So it is written here: where equations have a linear combination in which all
+//! derivatives of highest order cancel, the combination replaces that one of them which is differentiated least.
+//! Factors may be constants, parameters, and single expressions that change: where mass passes a node, `rho(p) q_a +
+//! m_a = 0`, `rho(p) q_b + m_b = 0` and `q_a + q_b = 0` say `m_a + m_b = 0`.
 //!
-//! With the offsets `c` of the equations and `d` of the variables, the entries of the system Jacobian are the derivatives
-//! of `f_i` by `x_j` differentiated `d_j - c_i` times. Where `u J = 0` for the rows of a set, `f_l` with the smallest offset
-//! becomes the sum of `u_i` times `f_i` differentiated `c_i - c_l` times, which makes the sum of `d` minus that of `c`
-//! smaller, so that this ends (the linear combination method of G. Tan, N. Nedialkov and J. Pryce, Conversion
-//! methods for improving structural analysis of differential-algebraic equation systems, BIT 57, 2017).
+//! Let `c` be the offsets of the equations and `d` those of the variables (see `offsets`). The entry `(i, j)` of the
+//! system Jacobian is the partial derivative of `f_i` by the derivative of order `d_j - c_i` of `x_j`. Where `u J = 0`
+//! for the rows of a set, the `f_l` with the smallest offset is replaced by the sum of `u_i` times `f_i` differentiated
+//! `c_i - c_l` times. Each replacement makes the sum of `d` minus that of `c` smaller, so the process ends. It is the
+//! linear combination method of G. Tan, N. Nedialkov and J. Pryce (Conversion methods for improving structural analysis
+//! of differential-algebraic equation systems, BIT 57, 2017).
+//!
+//! `offsets` computes `c` and `d`, `linear` reads equations as sums, `elimination` finds the dependent rows with
+//! numbers, `symbolic` finds their factors as expressions, `combination` writes the new equation. `analysis` calls
+//! [`expose`] before index reduction; `initial` calls [`following`].
 
 mod combination;
 mod elimination;
@@ -34,8 +39,8 @@ use offsets::{ChainPosition, DerivativeOffsets};
 
 /// The columns and rows of the continuous equations, after every hidden constraint has been written as one.
 ///
-/// `fixable` says whether parameters may be fixed with the structure where equations depend on each other by their values only.
-/// Errors: equations that say the same (E301, E302) or contradict each other (E303), constraints that cannot be
+/// `fixable` says whether parameters may be fixed with the structure where equations depend on each other only by their
+/// values. Errors: equations that repeat each other (E301) or contradict each other (E303), constraints that cannot be
 /// differentiated (E304).
 pub(super) fn expose(
     draft: &mut DaeDraft,
@@ -46,13 +51,15 @@ pub(super) fn expose(
     loop {
         let mut reduction = IndexReduction::new(draft);
         let places = offsets::places(&reduction);
-        // what is no system is refused when it is reduced
+        // Without offsets the system is structurally singular, which `reduce` reports. The sum of degrees must fall
+        // with each round; where it does not, the combinations have exposed nothing.
         let offsets = DerivativeOffsets::new(&reduction, &places).filter(|found| found.degrees() < degrees);
         let Some(offsets) = offsets else { return Ok(reduction) };
         degrees = offsets.degrees();
         let jacobian = SystemJacobian::new(draft, known, &reduction, (places, offsets));
         let mut changed: Vec<usize> = Vec::new();
         for found in jacobian.vanishing() {
+            // The combination was found with the old form of an equation; the next round looks at the new form.
             if found.iter().any(|(row, _)| changed.contains(row)) {
                 continue;
             }
@@ -72,8 +79,8 @@ pub(super) fn expose(
     }
 }
 
-/// Equations, by their place, that follow from others before them with the parameters as they are. `column` says which
-/// leaves are unknowns; equations that are not linear in them take no part.
+/// Equations, by their position, that follow from others before them with the parameters as they are. `column` gives
+/// the column of a leaf that is an unknown. Equations that are not linear in the unknowns take no part. Ascending.
 pub(super) fn following(
     draft: &DaeDraft,
     known: &mut SignAnalysis,
@@ -85,6 +92,7 @@ pub(super) fn following(
     for (i, equation) in equations.iter().enumerate() {
         let linear = LinearForm::new(draft, known, [equation.lhs, equation.rhs], |leaf| Some((column(leaf)?, 0)));
         let factors = linear.terms.iter().flat_map(|(_, factor)| factor.expressions());
+        // What is no linear term must be free of unknowns, factors included.
         let others: Vec<ExprId> = linear.rest.iter().map(|term| term.0).chain(factors).collect();
         let mut is_linear = true;
         walk.each(&draft.exprs, &others, |_, node| {
@@ -101,23 +109,25 @@ pub(super) fn following(
     elimination::following(&rows, columns).into_iter().map(|row| places[row]).collect()
 }
 
-/// The system Jacobian of the equations that are linear in the derivatives of highest order.
+/// The system Jacobian, restricted to the equations that are linear in the derivatives of highest order. Its columns
+/// are chains: a variable with its derivatives.
 struct SystemJacobian {
-    /// By column of the reduction.
+    /// By column of the reduction: its chain and its order in the chain.
     places: Vec<ChainPosition>,
-    /// By chain: the order of its highest derivative.
+    /// By chain: the order of its highest derivative after index reduction.
     highest: Vec<u32>,
-    /// Index into the draft's equations, by row.
+    /// By row: the index of its equation in the draft.
     equations: Vec<usize>,
-    /// How often the equation is differentiated, by row.
+    /// By row: how often the equation will be differentiated.
     offsets: Vec<u32>,
-    /// Factors by chain, by row.
+    /// By row: the numeric factors of highest derivatives, by chain.
     rows: Vec<elimination::EliminationRow>,
-    /// By chain: whether an equation holds its highest derivative other than linearly.
+    /// By chain: whether some equation contains its highest derivative other than linearly.
     beyond: Vec<bool>,
 }
 
 impl SystemJacobian {
+    /// Collects the rows of all equations of the reduction.
     fn new(
         draft: &DaeDraft,
         known: &mut SignAnalysis,
@@ -130,6 +140,7 @@ impl SystemJacobian {
         let mut walk = NodeTraversal::default();
         for (&equation, offset) in reduction.equations.iter().zip(offsets) {
             let linear = made.linear_form(draft, known, reduction, equation as usize);
+            // The chains whose highest derivative occurs in some expressions.
             let mut within = |parts: Vec<ExprId>| {
                 let mut chains = Vec::new();
                 walk.each(&draft.exprs, &parts, |_, node| {
@@ -142,6 +153,7 @@ impl SystemJacobian {
             let entries = made.entries_at(offset, &linear);
             let in_factors = within(entries.iter().flat_map(|(_, factor)| factor.expressions()).collect());
             let in_rest = within(linear.rest.iter().map(|term| term.0).collect());
+            // A highest derivative in the rest makes the equation nonlinear: it is no row.
             let row = row(draft, known, &entries).filter(|_| in_rest.is_empty());
             let chains = entries.iter().map(|entry| entry.0).filter(|_| row.is_none());
             let beyond: Vec<u32> = chains.chain(in_rest.iter().chain(&in_factors).copied()).collect();
@@ -155,19 +167,23 @@ impl SystemJacobian {
         made
     }
 
+    /// The chain and order of a leaf; `None` for what is no continuous unknown.
     fn place(&self, draft: &DaeDraft, reduction: &IndexReduction, leaf: ExprNode) -> Option<ChainPosition> {
         reduction.column(draft, leaf).map(|c| self.places[c as usize])
     }
 
-    /// Whether a derivative of an equation holds this one as a highest derivative.
+    /// Whether the derivative at this place becomes a highest derivative when an equation with this offset is
+    /// differentiated.
     fn is_highest(&self, (chain, order): ChainPosition, offset: u32) -> bool {
         order + offset == self.highest[chain as usize]
     }
 
+    /// The equation of a row as a sum.
     fn linear(&self, draft: &DaeDraft, known: &mut SignAnalysis, reduction: &IndexReduction, row: usize) -> LinearForm {
         self.linear_form(draft, known, reduction, self.equations[row])
     }
 
+    /// An equation of the draft as a sum.
     fn linear_form(
         &self,
         draft: &DaeDraft,
@@ -179,17 +195,18 @@ impl SystemJacobian {
         LinearForm::new(draft, known, sides, |leaf| self.place(draft, reduction, leaf))
     }
 
-    /// The terms of a row that hold highest derivatives, by chain.
+    /// The terms of a row that contain highest derivatives, by chain. A chain may occur more than once.
     fn entries<'l>(&self, row: usize, linear: &'l LinearForm) -> Vec<(u32, &'l Monomial)> {
         self.entries_at(self.offsets[row], linear)
     }
 
+    /// The terms that contain highest derivatives for an equation with this offset.
     fn entries_at<'l>(&self, offset: u32, linear: &'l LinearForm) -> Vec<(u32, &'l Monomial)> {
         let highest = linear.terms.iter().filter(|(place, _)| self.is_highest(*place, offset));
         highest.map(|((chain, _), factor)| (*chain, factor)).collect()
     }
 
-    /// Whether an expression in an equation with this offset holds a highest derivative.
+    /// Whether an expression in an equation with this offset contains a highest derivative.
     fn holds_highest(&self, draft: &DaeDraft, reduction: &IndexReduction, e: ExprId, offset: u32) -> bool {
         let mut found = false;
         NodeTraversal::default().each(&draft.exprs, &[e], |_, node| {
@@ -199,11 +216,12 @@ impl SystemJacobian {
         found
     }
 
+    /// The linear combinations of rows that vanish, with numeric factors.
     fn vanishing(&self) -> Vec<RowCombination> {
         elimination::vanishing(&self.rows, self.places.len())
     }
 
-    /// What is wrong where equations add up to nothing, or to what holds no unknown.
+    /// The diagnostic where equations add up to nothing, or to `left`, which contains no unknown.
     fn explain(
         &self,
         draft: &DaeDraft,
@@ -225,12 +243,14 @@ impl SystemJacobian {
         messages::repeated(draft, &equations, &free)
     }
 
-    /// Unknowns that can change together, by these parts, while every equation holds.
+    /// Chains that can change together while every equation holds, each with its part: a vector of the null space. The
+    /// columns of the Jacobian take the place of rows for this. Empty where there is none.
     fn free_combination(&self) -> Vec<(u32, f64)> {
         let mut columns: Vec<elimination::EliminationRow> = vec![Vec::new(); self.places.len()];
         for (r, row) in self.rows.iter().enumerate() {
             row.iter().for_each(|&(chain, value)| columns[chain as usize].push((r as u32, value)));
         }
+        // A chain that occurs nonlinearly may be determined by what is not in the Jacobian.
         let linear = |&c: &usize| !self.beyond[c] && !columns[c].is_empty();
         let chains: Vec<usize> = (0..columns.len()).filter(linear).collect();
         let columns: Vec<elimination::EliminationRow> = chains.iter().map(|&c| columns[c].clone()).collect();
@@ -239,7 +259,8 @@ impl SystemJacobian {
     }
 }
 
-/// The sums of the factors of each chain; `None` where one of them is 0 by the value of a parameter.
+/// A row of numbers from its entries: the factors of each chain added up, in ascending order of chains. `None` where a
+/// factor is 0 or not finite with the parameters as they are.
 fn row(
     draft: &DaeDraft,
     known: &mut SignAnalysis,

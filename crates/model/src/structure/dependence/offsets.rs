@@ -1,25 +1,26 @@
-//! How often Pantelides' algorithm will differentiate each equation and each variable, before it does.
+//! How often Pantelides' algorithm will differentiate each equation and each variable, computed before it does.
 //!
-//! The offsets `c` of equations and `d` of variables of the signature matrix: the order of variable `j` in equation `i` is at
-//! most `d_j - c_i`, and equal to it along a matching (J. Pryce, A simple structural analysis method for DAEs, BIT 41,
-//! 2001). Here they are counted by Pantelides' steps without differentiating anything.
+//! These are the offsets `c` of equations and `d` of variables of the signature matrix: the order of variable `j` in
+//! equation `i` is at most `d_j - c_i`, and equal to it along a matching (J. Pryce, A simple structural analysis method
+//! for DAEs, BIT 41, 2001). They are found by Pantelides' steps on orders alone; nothing is differentiated.
 
 use super::super::incidence::{IncidenceMatrix, NONE};
 use super::super::matching::{Matching, PathAugmenter};
 use super::super::pantelides::IndexReduction;
 
-/// Rows and chains (a variable with its derivatives) as [`IndexReduction`] numbers them; a chain goes by its lowest column.
+/// The offsets. Rows and chains (a variable with its derivatives) are numbered as in [`IndexReduction`]; a chain has
+/// the number of its lowest column.
 pub(super) struct DerivativeOffsets {
-    /// How often each row is differentiated.
+    /// By row: how often it is differentiated.
     pub rows: Vec<u32>,
     /// By column: the order of the highest derivative of the chain that begins there.
     pub chains: Vec<u32>,
 }
 
-/// The chain of an unknown, and how many derivatives up it stands.
+/// The chain of an unknown, and its order of differentiation in it.
 pub(super) type ChainPosition = (u32, u32);
 
-/// By column.
+/// By column of the reduction: its chain and its order.
 pub(super) fn places(reduction: &IndexReduction) -> Vec<ChainPosition> {
     let mut places = vec![(NONE, 0); reduction.columns.len()];
     let lowest = (0..places.len()).filter(|&c| reduction.columns[c].integral == NONE);
@@ -34,7 +35,8 @@ pub(super) fn places(reduction: &IndexReduction) -> Vec<ChainPosition> {
 }
 
 impl DerivativeOffsets {
-    /// `None` where equations cannot have an unknown each however often they are differentiated: unknowns that cancel.
+    /// The offsets of a system. `None` where equations cannot be matched with one unknown each however often they are
+    /// differentiated: the system is structurally singular because unknowns cancel.
     pub fn new(reduction: &IndexReduction, places: &[ChainPosition]) -> Option<Self> {
         let mut chains = vec![0; places.len()];
         for &(chain, order) in places {
@@ -42,6 +44,7 @@ impl DerivativeOffsets {
         }
         let signature = SignatureMatrix::new(reduction, places);
         let mut found = DerivativeOffsets { rows: vec![0; reduction.equations.len()], chains };
+        // A matching of the highest derivatives that occur is a start; `raise` extends it.
         let highest = reduction.first_matching();
         let mut matching = Matching::empty(found.rows.len(), places.len());
         for (row, &column) in highest.column_of.iter().enumerate().filter(|(_, c)| **c != NONE) {
@@ -50,14 +53,14 @@ impl DerivativeOffsets {
         found.raise(&signature, &mut matching).then_some(found)
     }
 
-    /// How many states there are: the sum of the orders along the matching.
+    /// The number of states (degrees of freedom): the sum of the orders along the matching.
     pub fn degrees(&self) -> i64 {
         let sum = |orders: &[u32]| orders.iter().map(|&n| i64::from(n)).sum::<i64>();
         sum(&self.chains) - sum(&self.rows)
     }
 
-    /// Until every row has a chain of its own in which its order is the highest that it can be; false where that never is, as
-    /// in [`IndexReduction::reduce`].
+    /// Raises orders until every row is matched with a chain in which its order is the highest. False where that never
+    /// happens: the limit is that of [`IndexReduction::reduce`].
     fn raise(&mut self, signature: &SignatureMatrix, matching: &mut Matching) -> bool {
         let most = self.chains.len() as u32;
         let mut augmenter = PathAugmenter::default();
@@ -69,6 +72,8 @@ impl DerivativeOffsets {
                 if augmenter.augment(&signature.chains, matching, row, highest) {
                     break;
                 }
+                // As in Pantelides' algorithm: all rows that compete, and the chains they compete for, are
+                // differentiated once.
                 augmenter.rows_seen.iter().for_each(|&r| self.rows[r as usize] += 1);
                 augmenter.columns_seen.iter().for_each(|&c| self.chains[c as usize] += 1);
                 if self.rows[row as usize] > most {
@@ -80,21 +85,25 @@ impl DerivativeOffsets {
     }
 }
 
-/// The chains of each row with their highest orders in it.
+/// The signature matrix: the chains of each row with the highest order in which the row contains them.
 struct SignatureMatrix {
+    /// By row: its chains.
     chains: IncidenceMatrix,
+    /// By row: where its orders begin in `orders`.
     starts: Vec<usize>,
+    /// The orders of all entries, in the order of the entries of `chains`.
     orders: Vec<u32>,
 }
 
 impl SignatureMatrix {
+    /// Reads the highest orders from the incidence matrix of the reduction.
     fn new(reduction: &IndexReduction, places: &[ChainPosition]) -> Self {
         let mut made = SignatureMatrix { chains: IncidenceMatrix::default(), starts: Vec::new(), orders: Vec::new() };
         let mut row_places = Vec::new();
         for row in 0..reduction.equations.len() as u32 {
             row_places.clear();
             row_places.extend(reduction.solvable(row).iter().map(|&c| places[c as usize]));
-            // of each chain the highest order first
+            // The highest order of each chain first, so that `dedup` keeps it.
             row_places.sort_unstable_by_key(|&(chain, order)| (chain, std::cmp::Reverse(order)));
             row_places.dedup_by_key(|place| place.0);
             let chains: Vec<u32> = row_places.iter().map(|place| place.0).collect();
@@ -105,6 +114,7 @@ impl SignatureMatrix {
         made
     }
 
+    /// The order of the entry at a position of a row.
     fn order(&self, row: u32, position: usize) -> u32 {
         self.orders[self.starts[row as usize] + position]
     }

@@ -1,20 +1,25 @@
-//! By which factors rows add up to 0 whatever the expressions in them are worth: elimination with sums of products in place
-//! of numbers, without a division by what has more than one term (E. H. Bareiss, Sylvester's identity and multistep
-//! integer-preserving Gaussian elimination, Math. Comp. 22, 1968, has the idea).
+//! The factors by which rows add up to 0 whatever the expressions in them are worth.
+//!
+//! This is Gaussian elimination with sums of products in the place of numbers. Nothing is divided by a sum of several
+//! terms; the row is multiplied by it instead (the idea of E. H. Bareiss, Sylvester's identity and multistep
+//! integer-preserving Gaussian elimination, Math. Comp. 22, 1968). `combination` calls [`factors`] for the few rows
+//! that the numeric elimination found to be dependent.
 
 use super::elimination::CANCELLED;
 use super::linear::Monomial;
 
-/// More rows than this are too many for elimination by hand.
+/// The most rows for which the elimination is tried.
 const MOST_ROWS: usize = 100;
-/// Sums of more terms than this are too long for an equation.
+/// The most terms of a sum. Longer sums would make an equation that costs more than it gains.
 const MOST_TERMS: usize = 50;
 
-/// A sum of unlike factors; 0 without any.
+/// A sum of unlike factors. It is 0 without any.
 pub(super) type MonomialSum = Vec<Monomial>;
 
-/// The factor of each of these rows (chains with factors), of which all but one are independent; `None` where they depend
-/// on each other by the values of expressions only, or where it would take too much.
+/// The factor of each row in the combination that vanishes.
+///
+/// Each row lists chains with factors; all rows but one must be independent. `None` where the rows depend on each other
+/// only by the values of expressions, or where limits are exceeded.
 pub(super) fn factors(rows: &[Vec<(u32, &Monomial)>]) -> Option<Vec<MonomialSum>> {
     if rows.len() > MOST_ROWS {
         return None;
@@ -24,24 +29,29 @@ pub(super) fn factors(rows: &[Vec<(u32, &Monomial)>]) -> Option<Vec<MonomialSum>
         elimination.eliminate(row, column)?;
     }
     let parts = elimination.open.pop()?.parts;
+    // Exactly one row must be left empty, and every given row must take part in it.
     let complete = elimination.open.is_empty() && parts.iter().all(|part| !part.is_empty());
     complete.then(|| with_most_numbers(parts))
 }
 
+/// The state of the elimination.
 struct SymbolicElimination {
     /// Rows that have not been a pivot.
     open: Vec<SymbolicRow>,
+    /// The number of columns.
     width: usize,
 }
 
+/// A row with the record of what it consists of.
 struct SymbolicRow {
-    /// By column.
+    /// By column: its entry.
     entries: Vec<MonomialSum>,
-    /// By row as given: what this one consists of.
+    /// By given row: the factor with which it is contained in this one.
     parts: Vec<MonomialSum>,
 }
 
 impl SymbolicElimination {
+    /// Numbers the chains that occur as columns and fills the entries.
     fn new(rows: &[Vec<(u32, &Monomial)>]) -> Self {
         let mut chains: Vec<u32> = rows.iter().flatten().map(|entry| entry.0).collect();
         chains.sort_unstable();
@@ -61,7 +71,8 @@ impl SymbolicElimination {
         SymbolicElimination { open: rows.iter().enumerate().map(row).collect(), width: chains.len() }
     }
 
-    /// A number before a product before a sum; among these the one that fills the fewest entries.
+    /// The pivot of least cost, as row and column. A number is preferred to a product, a product to a sum; among these
+    /// the pivot that fills the fewest entries. `None` when all rows are empty.
     fn next_pivot(&self) -> Option<(usize, usize)> {
         let users = |column: usize| self.open.iter().filter(|row| !row.entries[column].is_empty()).count();
         let others: Vec<usize> = (0..self.width).map(|column| users(column).saturating_sub(1)).collect();
@@ -78,7 +89,7 @@ impl SymbolicElimination {
         candidates.min().map(|(_, row, column)| (row, column))
     }
 
-    /// Takes the column out of the other rows; `None` where sums become too long.
+    /// Eliminates a column from the other rows with the row `row`, which is removed. `None` where sums become too long.
     fn eliminate(&mut self, row: usize, column: usize) -> Option<()> {
         let pivot = self.open.remove(row);
         for row in &mut self.open {
@@ -86,7 +97,7 @@ impl SymbolicElimination {
             if entry.is_empty() {
                 continue;
             }
-            // a single term divides; what is longer multiplies the row instead
+            // A single term divides; a sum of several terms multiplies the row instead.
             let (by, times) = match pivot.entries[column].as_slice() {
                 [single] => (product(&entry, &[Monomial::ONE.times(single, -1)]), None),
                 several => (entry, Some(several.to_vec())),
@@ -110,6 +121,7 @@ impl SymbolicElimination {
     }
 }
 
+/// The product of two sums.
 fn product(a: &[Monomial], b: &[Monomial]) -> MonomialSum {
     let mut made = MonomialSum::new();
     for left in a {
@@ -118,7 +130,7 @@ fn product(a: &[Monomial], b: &[Monomial]) -> MonomialSum {
     made
 }
 
-/// Adds to the like term, if there is one; what cancels goes.
+/// Adds a term to the like one, if there is one. Terms that cancel are removed.
 fn add(to: &mut MonomialSum, factor: Monomial) {
     let Some(at) = to.iter().position(|term| term.is_like(&factor)) else { return to.push(factor) };
     match sum(&to[at], &factor) {
@@ -127,14 +139,14 @@ fn add(to: &mut MonomialSum, factor: Monomial) {
     }
 }
 
-/// The sum of two like factors; `None` where they cancel.
+/// The sum of two like factors; `None` where they cancel up to rounding.
 pub(super) fn sum(a: &Monomial, b: &Monomial) -> Option<Monomial> {
     let number = a.number + b.number;
     let cancels = number.abs() <= CANCELLED * (a.number.abs() + b.number.abs());
     (!cancels).then(|| a.clone().with_number(number))
 }
 
-/// A multiple of these factors in which as many as possible are numbers.
+/// The same factors up to a common one, chosen so that as many as possible are numbers.
 fn with_most_numbers(sums: Vec<MonomialSum>) -> Vec<MonomialSum> {
     let single = || sums.iter().filter_map(|sum| if let [factor] = sum.as_slice() { Some(factor) } else { None });
     let like = |f: &Monomial| single().filter(|other| other.is_like(f)).count();
@@ -155,7 +167,8 @@ mod tests {
 
     #[test]
     fn conductances_at_a_node_add_up_to_a_sum() {
-        // currents i, j, k through a, b, c from a node x: x = a*i, x = b*j, x = -c*k, i + j = k, and i + j = what flows in
+        // Currents i, j, k through a, b, c from a node x: x = a*i, x = b*j, x = -c*k, i + j = k, and i + j is the
+        // inflow.
         let (a, b, c) = (symbol(1, 1), symbol(2, 1), symbol(3, 1));
         let (minus, one) = (Monomial::ONE.negative(), Monomial::ONE);
         let rows = [
