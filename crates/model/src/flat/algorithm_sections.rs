@@ -1,4 +1,9 @@
 //! Algorithm sections of components: every variable that a section assigns gets the value it has at the end (MLS 11.1).
+//!
+//! Enters: the statements of a section. Leaves: one equation for each scalar that the section assigns, a `WhenClause`
+//! for each `when` statement, and assertions. The statements are executed on symbolic values: the assigned variables
+//! are local copies that start from their values before the section. `EquationFlattener::body` calls
+//! [`EquationFlattener::algorithm`].
 
 use super::equations::{EquationFlattener, EquationSides, assert_of, message};
 use super::{ScalarType, Variability, WhenAction, WhenBranch, WhenClause};
@@ -12,12 +17,13 @@ use bramah_syntax::symbol::Symbol;
 use rustc_hash::FxHashSet;
 
 impl<'a> EquationFlattener<'_, 'a, '_> {
-    /// An algorithm section: every variable it assigns gets the value it has at the end (MLS 11.1).
+    /// Translates a section. `initial` sections give initial equations.
     pub(super) fn algorithm(&mut self, section: &'a [Statement], view: LookupContext, initial: bool) {
         let (mut always, mut in_when) = (Vec::new(), Vec::new());
         assigned(section, false, &mut always, &mut in_when);
         let mut originals: Vec<AlgorithmTarget> = Vec::new();
         let mut count = 0;
+        // An element is assigned as a whole or in parts, at several places: one copy serves all of them.
         for name in always.iter().chain(&in_when).map(|r| r.parts[0].name.name) {
             if originals.iter().any(|o| o.name == name) {
                 continue;
@@ -34,16 +40,19 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
                 scalars_of(&own, &below, &mut found);
                 found
             };
+            // Which scalars of the element are assigned at all, and which of them inside a `when`.
             let (all, in_when) = (scalars(&targets), scalars(&in_when));
             let start = self.algorithm_start(&own, &all, &in_when);
             originals.push(AlgorithmTarget { name, own, in_when });
             self.instance.statements().push_local(name, start);
             count += 1;
         }
+        // All copies must be taken off the stack again, also after an error.
         let done = self.instance.statements().run_section(section, view, count);
         let results: Vec<ModelicaValue> = self.instance.statements().take_locals(count);
         let whens = self.instance.statements().take_whens();
         let calls = self.instance.statements().take_calls();
+        // The message for this is made only if no other error explains it.
         if done.is_none() {
             self.section_failed(section);
             return;
@@ -57,7 +66,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         }
     }
 
-    /// An `assert` or `terminate` of an algorithm section outside `when`; one of an initial section counts at the start only.
+    /// Adds an `assert` or `terminate` of a section outside `when`. One of an initial section counts at the start only:
+    /// a `terminate` there becomes an action of `when initial()`.
     pub(super) fn algorithm_call(&mut self, call: AlgorithmCall, view: LookupContext, initial: bool) {
         let span = call.span;
         let origin = self.origin(span, view);
@@ -80,7 +90,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         }
     }
 
-    /// An `assert` or `terminate` inside a `when` of an algorithm section.
+    /// Adds an `assert` or `terminate` inside a `when` to the actions of its branch. A call without a condition is a
+    /// `terminate`.
     pub(super) fn algorithm_action(&mut self, call: AlgorithmCall, view: LookupContext, out: &mut Vec<WhenAction>) {
         let origin = self.origin(call.span, view);
         if call.condition.is_none() {
@@ -90,6 +101,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         out.extend(assert_of(self.instance, call, origin).map(WhenAction::Assert));
     }
 
+    /// Reports a section that could not be executed, unless another error explains it.
     pub(super) fn section_failed(&mut self, section: &'a [Statement]) {
         if !self.instance.diagnostics.iter().any(Diagnostic::is_error)
             && let Some(first) = section.first()
@@ -105,7 +117,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         }
     }
 
-    /// What the variables that the section assigns hold before it: their `pre` value if discrete, their start value else.
+    /// The value of an element before the section. A scalar that the section assigns holds its `pre` value if it is
+    /// discrete, else its start value (MLS 11.1.2). A scalar that it does not assign is itself.
     pub(super) fn algorithm_start(
         &mut self,
         own: &ModelicaValue,
@@ -124,7 +137,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         })
     }
 
-    /// The equations that the section comes to, for all that it does not hold between the events of its `when`s.
+    /// Adds one equation for each scalar that the section changes. Scalars that a `when` assigns are left to the
+    /// clause.
     fn section_results(
         &mut self,
         originals: &[AlgorithmTarget],
@@ -139,7 +153,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
             let held = whens.iter().any(|w| w.branches.iter().any(|b| b.values.iter().any(|(n, _)| n == name)));
             let mut pairs = Vec::new();
             own.zip(result, &mut |x, y, _| {
-                // a variable that nothing assigns is what it was
+                // Equal expressions: nothing was assigned to the scalar.
                 if x != y && !(held && in_when.contains(&x)) {
                     pairs.push(EquationSides { lhs: x, rhs: y, span });
                 }
@@ -149,6 +163,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         }
     }
 
+    /// Adds the clause of a `when` statement: an assignment for each scalar of its branches, then its assertions.
     fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[AlgorithmTarget], view: LookupContext) {
         let origin = self.origin(when.span, view);
         let mut made = WhenClause { branches: Vec::new(), origin };
@@ -176,16 +191,18 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 }
 
-/// An element of which an algorithm section assigns something.
+/// An element of which a section assigns something.
 struct AlgorithmTarget {
+    /// Its name.
     name: Symbol,
-    /// Its variables.
+    /// Its variables, as a value of the same shape.
     own: ModelicaValue,
-    /// Those that are assigned in a `when`.
+    /// The scalars of it that are assigned inside a `when`.
     in_when: FxHashSet<ExprId>,
 }
 
-/// The scalars of a value that references name, which begin below it; of an array all, whatever its indices say.
+/// Collects the scalars of a value that references name. `targets` are the parts of the references below the value; an
+/// empty one names all of it. Of an array all elements count, whatever the indices say.
 fn scalars_of(value: &ModelicaValue, targets: &[&[ast::ReferencePart]], found: &mut FxHashSet<ExprId>) {
     match value {
         _ if targets.iter().any(|parts| parts.is_empty()) => found.extend(value.all_scalars()),
@@ -205,9 +222,11 @@ fn scalars_of(value: &ModelicaValue, targets: &[&[ast::ReferencePart]], found: &
     }
 }
 
-/// Several `when`s of an algorithm that assign one variable become one: of those that fire at once the last one counts
-/// (MLS 11.2.7). Where one of them reads what another one assigns, or a branch leaves the variable alone, they stay as they
-/// are, and the variable is determined twice.
+/// Merges several `when` statements that assign one variable into one clause: of those that fire at once the last one
+/// counts (MLS 11.2.7).
+///
+/// Where one of them reads what another assigns, or a branch does not assign the variable, they stay as they are; the
+/// variable is then determined twice, which is reported later.
 fn in_order(
     instance: &Instance<'_, '_>,
     mut whens: Vec<AlgorithmWhen>,
@@ -236,6 +255,7 @@ fn in_order(
             continue;
         }
         let mut branches = Vec::new();
+        // The first branch of a clause has priority, so the last statement comes first.
         for &i in of.iter().rev() {
             for branch in &mut whens[i].branches {
                 let at = branch.values.iter().position(|(n, _)| *n == name).expect("seen above");
@@ -247,6 +267,7 @@ fn in_order(
         let span = whens[first].span;
         whens.insert(last + 1, AlgorithmWhen { branches, span });
     }
+    // Statements whose assignments have all moved are empty.
     whens.retain(|w| w.branches.iter().any(|b| !b.values.is_empty() || !b.calls.is_empty()));
     whens
 }

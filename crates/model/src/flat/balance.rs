@@ -1,4 +1,8 @@
-//! The balance of every component by itself: as many equations as it owes. Ports are checked before.
+//! The balance of every component by itself: it must bring as many equations as it owes (MLS 4.8).
+//!
+//! Enters: the census and the signal connections. Leaves: doubts, kept in `FlatModel::doubts` and reported only if the
+//! whole model turns out to be singular. So a component that an unusual but valid circuit completes is not blamed.
+//! Ports are checked before, in `ports`.
 
 use super::census::{BalanceCensus, BalanceRole};
 use super::ports::SignalConnections;
@@ -8,10 +12,11 @@ use bramah_expr::VarId;
 use bramah_syntax::diag::{Code, Diagnostic};
 use rustc_hash::FxHashSet;
 
-/// So many places are shown.
+/// The most places that a message shows.
 const MOST_PLACES: usize = 6;
 
-/// What seems wrong, at the first level that shows anything: signals, then each component, then the whole.
+/// What seems wrong, at the first level that shows anything: signals, then each component, then the whole model. One
+/// message for each class, since all its instances have the same fault.
 pub(super) fn doubts(
     instance: &Instance<'_, '_>,
     signals: &SignalConnections<'_>,
@@ -27,6 +32,7 @@ pub(super) fn doubts(
     let mut found = Vec::new();
     for (i, &owner) in (0u32..).zip(&census.owner) {
         let at = i as usize;
+        // Only instances that are components of their own are judged.
         if owner != i || census.unjudged[at] || census.owed[at] == census.brought[at] {
             continue;
         }
@@ -37,13 +43,15 @@ pub(super) fn doubts(
     if found.is_empty() { whole(flat, census).into_iter().collect() } else { found }
 }
 
-/// The count of the whole model, where components could not be judged alone.
+/// The count of the whole model, where some components could not be judged alone. `None` where it is balanced or all
+/// components were judged.
 fn whole(flat: &FlatModel, census: &BalanceCensus) -> Option<Diagnostic> {
     if !census.unjudged.contains(&true) {
         return None;
     }
     let given: usize = flat.variables.iter().filter(|v| v.input).count();
     let unknowns = census.role.iter().filter(|r| **r != BalanceRole::Fixed).count() - given;
+    // Variables assigned in `when` clauses count as equations, each once.
     let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(super::WhenClause::assigned).collect();
     let equations = flat.equations.len() + assigned.len();
     if equations == unknowns {
@@ -59,16 +67,22 @@ fn whole(flat: &FlatModel, census: &BalanceCensus) -> Option<Diagnostic> {
     )
 }
 
-/// What is wrong with one component.
+/// Makes the message about one component with the wrong number of equations.
 struct BalanceChecker<'j, 'a, 'l> {
+    /// The component tree, for places of declarations.
     instance: &'j Instance<'a, 'l>,
+    /// The flat model.
     flat: &'j FlatModel,
+    /// The counts.
     census: &'j BalanceCensus,
+    /// The scopes of all instances.
     scopes: &'j [ScopeId],
+    /// The component.
     at: u32,
 }
 
 impl BalanceChecker<'_, '_, '_> {
+    /// The message: counts, what the equations are needed for, and places.
     fn verdict(&self) -> Diagnostic {
         let (owed, brought) = (self.census.owed[self.at as usize], self.census.brought[self.at as usize]);
         let info = &self.flat.instances[self.at as usize];
@@ -86,7 +100,7 @@ impl BalanceChecker<'_, '_, '_> {
         if brought < owed { self.too_few(made, owed - brought) } else { self.too_many(made, brought) }
     }
 
-    /// What the number of equations needed consists of.
+    /// Adds a note that says what the needed equations are for: ports, own variables, inputs of components.
     fn needed(&self, made: Diagnostic) -> Diagnostic {
         let of = |role: BalanceRole| -> Vec<String> {
             let all = (0..self.census.role.len()).filter(|&i| self.census.role[i] == role);
@@ -107,6 +121,8 @@ impl BalanceChecker<'_, '_, '_> {
         if parts.is_empty() { made } else { made.note(format!("needed: {}", parts.join(", "))) }
     }
 
+    /// Adds the variables that no equation mentions. A two-port that lacks one equation gets advice to balance its
+    /// flows.
     fn too_few(&self, mut made: Diagnostic, missing: usize) -> Diagnostic {
         let mentioned = self.mentioned();
         let mut shown = 0;
@@ -133,6 +149,7 @@ impl BalanceChecker<'_, '_, '_> {
         }
     }
 
+    /// Adds the equations of the component, or the one that contains no unknown.
     fn too_many(&self, mut made: Diagnostic, brought: usize) -> Diagnostic {
         let own: Vec<&FlatEquation> = self.equations().collect();
         let idle = |e: &&&FlatEquation| {
@@ -155,7 +172,7 @@ impl BalanceChecker<'_, '_, '_> {
         })
     }
 
-    /// The equations written in the component.
+    /// The equations written in the component, those of connections excluded.
     fn equations(&self) -> impl Iterator<Item = &FlatEquation> {
         let made = [OriginKind::ConnectPotential, OriginKind::ConnectFlow, OriginKind::OpenPort];
         self.flat
@@ -175,7 +192,7 @@ impl BalanceChecker<'_, '_, '_> {
         found.vars.into_iter().chain(found.ders).chain(whens).collect()
     }
 
-    /// A variable's name as seen in the component.
+    /// The name of a variable as seen from inside the component.
     fn local(&self, variable: usize) -> String {
         let name = &self.flat.variables[variable].name;
         let prefix = &self.flat.instances[self.at as usize].name;
@@ -184,6 +201,7 @@ impl BalanceChecker<'_, '_, '_> {
     }
 }
 
+/// Up to eight names in backticks, joined by commas.
 fn listed(names: &[String]) -> String {
     let shown: Vec<String> = names.iter().take(8).map(|n| format!("`{n}`")).collect();
     let more = if names.len() > 8 { format!(" and {} more", names.len() - 8) } else { String::new() };

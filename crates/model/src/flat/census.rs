@@ -1,7 +1,8 @@
-//! Who brings which equations and who needs them: the roles of variables in the components that hold them.
+//! The census of equations: which component brings which equations, and which it owes (MLS 4.8, balanced models).
 //!
-//! A component owes one equation for each variable of its own and for each flow of its ports; the circuit around it
-//! supplies the other half of every port and the values of its inputs (MLS 4.8).
+//! A component owes one equation for each variable of its own and one for each flow of its ports. The circuit around it
+//! supplies the other half of every port and the values of its inputs. Enters: the flat model with its component tree.
+//! Leaves: a [`BalanceCensus`], from which `balance` and `ports` make their messages. `flatten` takes it once.
 
 use super::numbers::ComponentNumbers;
 use super::{FlatModel, OriginKind, Variability};
@@ -13,44 +14,48 @@ use bramah_syntax::symbol::Symbol;
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
-/// What a variable is to the component that holds it.
+/// What a variable is to the component that contains it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BalanceRole {
-    /// A parameter or constant: nobody owes an equation.
+    /// A parameter or constant: no equation is owed.
     Fixed,
-    /// The component owes its equation.
+    /// A variable of its own: the component owes an equation.
     Own,
-    /// Comes from outside.
+    /// An input: its value comes from outside.
     Input,
-    /// The potential of a port.
+    /// The potential of a port: the connections supply the equation.
     Potential,
     /// The flow of a port: the component owes an equation.
     Flow,
 }
 
-/// The roles of all variables, by component.
+/// The roles of all variables and the counts of equations, by component. A component goes by the number of its
+/// instance.
 pub(super) struct BalanceCensus {
-    /// The component that an instance is part of (connectors and records belong to theirs), by instance.
+    /// By instance: the component that it is part of. Connectors and records belong to the component around them.
     pub owner: Vec<u32>,
-    /// The component around each component; the model is its own.
+    /// By component: the component around it; the model is its own.
     pub around: Vec<u32>,
-    /// By flat variable.
+    /// By flat variable: its role.
     pub role: Vec<BalanceRole>,
-    /// The component of each flat variable.
+    /// By flat variable: its component.
     pub holder: Vec<u32>,
-    /// Equations that each component owes.
+    /// By component: how many equations it owes.
     pub owed: Vec<usize>,
-    /// Equations that it brings.
+    /// By component: how many equations it brings.
     pub brought: Vec<usize>,
-    /// Inputs of components that a modifier gives a value.
+    /// Inputs of components that a binding gives a value.
     pub bound: FxHashSet<VarId>,
-    /// Ports without pairs of potential and flow: the connector's instance, and its potentials less its flows.
+    /// Ports with different numbers of potentials and flows: the connector's instance, and its potentials less its
+    /// flows.
     pub uneven: Vec<(u32, i64)>,
-    /// Components that cannot be judged alone: their ports have no pairs of potential and flow.
+    /// By component: whether it cannot be judged alone, because some of its ports have no pairs of potential and flow.
     pub unjudged: Vec<bool>,
 }
 
 impl BalanceCensus {
+    /// Takes the census. `scopes` are the component instances in the order of `FlatModel::instances`. `constraints`
+    /// lists the overconstrained records with their variables and the number of their constraints.
     pub(super) fn take(
         instance: &Instance<'_, '_>,
         network: &Network,
@@ -79,6 +84,7 @@ impl BalanceCensus {
         census
     }
 
+    /// Gives each variable its role and finds uneven ports.
     fn roles(
         &mut self,
         instance: &Instance<'_, '_>,
@@ -86,7 +92,7 @@ impl BalanceCensus {
         scopes: &[ScopeId],
         constraints: &[(Vec<u32>, usize)],
     ) {
-        // Potentials less flows of each port.
+        // By port: potentials less flows.
         let mut pairs: BTreeMap<u32, i64> = BTreeMap::new();
         for (i, v) in flat.variables.iter().enumerate() {
             let data = &instance.variables[instance.order[i] as usize];
@@ -95,7 +101,7 @@ impl BalanceCensus {
             let role = match (v.variability <= Variability::Parameter, data.causality) {
                 (true, _) => BalanceRole::Fixed,
                 (_, Some(CausalityPrefix::Input)) if public => BalanceRole::Input,
-                // what leaves through a port is the component's to say
+                // What leaves through a port is determined by the component (MLS 15.1).
                 _ if data.stream => BalanceRole::Own,
                 (_, None) if port.is_some() && public && v.flow => BalanceRole::Flow,
                 (_, None) if port.is_some() && public => BalanceRole::Potential,
@@ -112,7 +118,7 @@ impl BalanceCensus {
         }
         for (port, difference) in pairs {
             if difference != 0 {
-                // a bus has no pairs
+                // The members of a bus are no pairs of potential and flow by intention.
                 if !instance.scope(scopes[port as usize]).template.is_expandable() {
                     self.uneven.push((port, difference));
                 }
@@ -121,8 +127,8 @@ impl BalanceCensus {
         }
     }
 
-    /// Overconstrained components of ports count by their constraints, and components with such ports cannot be judged
-    /// alone, for branches tell which of their equations hold (MLS 9.4.1).
+    /// Counts an overconstrained record of a port by its constraints instead of its variables, and excludes the
+    /// component from the balance: branches of the connection graph decide which of its equations hold (MLS 9.4.1).
     fn overconstrained(
         &mut self,
         instance: &Instance<'_, '_>,
@@ -133,6 +139,7 @@ impl BalanceCensus {
         pairs: &mut BTreeMap<u32, i64>,
     ) {
         let first = variables.first().map(|&i| &instance.variables[i as usize]);
+        // Variables that are not in the flat model have no number.
         let Some(data) = first.filter(|d| d.id.0 != u32::MAX) else { return };
         let origin = flat.variables[data.id.index()].origin.instance;
         if let (Some(port), true) = self.place(instance, flat, scopes, origin, &data.name) {
@@ -141,7 +148,8 @@ impl BalanceCensus {
         }
     }
 
-    /// The outermost connector around a variable, and whether it can be seen from outside its component.
+    /// The outermost connector around a variable inside its component, and whether it can be seen from outside. `None`
+    /// for a variable in no connector.
     fn place(
         &self,
         instance: &Instance<'_, '_>,
@@ -160,6 +168,7 @@ impl BalanceCensus {
             element = &flat.instances[at as usize].name;
             at = flat.instances[at as usize].parent;
         }
+        // The element of the component itself decides about visibility: what is protected is no port.
         let last = element.rsplit('.').next().unwrap_or(element);
         let last = Symbol::new(last.split('[').next().unwrap_or(last));
         let template = &instance.scope(scopes[holder as usize]).template;
@@ -167,11 +176,13 @@ impl BalanceCensus {
         (port, !protected)
     }
 
+    /// Marks a component and the one around it as not to be judged alone.
     fn doubt(&mut self, component: u32) {
         self.unjudged[component as usize] = true;
         self.unjudged[self.around[component as usize] as usize] = true;
     }
 
+    /// Counts the equations that components bring by themselves.
     fn equations(&mut self, flat: &FlatModel) {
         for e in &flat.equations {
             let owner = self.owner[e.origin.instance as usize];
@@ -179,6 +190,7 @@ impl BalanceCensus {
                 OriginKind::ConnectPotential | OriginKind::ConnectFlow | OriginKind::OpenPort => continue,
                 OriginKind::Binding => {
                     let var = as_variable(flat, e.lhs);
+                    // The binding of an input is brought by whoever uses the component, not by the component.
                     if let Some(v) = var.filter(|v| self.role[v.index()] == BalanceRole::Input) {
                         self.bound.insert(v);
                         continue;
@@ -188,6 +200,7 @@ impl BalanceCensus {
             }
             self.brought[owner as usize] += 1;
         }
+        // A variable that a `when` assigns counts once, however many branches assign it.
         let mut assigned: FxHashSet<VarId> = FxHashSet::default();
         for when in &flat.whens {
             let owner = self.owner[when.origin.instance as usize];
@@ -199,7 +212,8 @@ impl BalanceCensus {
         }
     }
 
-    /// Joined signals: one equation less than members. Flows of own ports that are joined inside: one each.
+    /// Counts the equations that connections bring to the component in which they stand: one for each joined pair of
+    /// signals, one for each flow or stream of its own ports that is joined inside.
     fn connections(&mut self, instance: &Instance<'_, '_>, network: &Network, scopes: &[ScopeId]) {
         let numbers = ComponentNumbers::new(scopes);
         for set in &network.flows {
@@ -223,6 +237,7 @@ impl BalanceCensus {
         let mut groups = VariableGroups::default();
         for pair in &network.signals {
             let at = numbers.of(pair.scope);
+            // A pair that closes a circle says nothing new.
             if groups.join((at, pair.a), (at, pair.b)) {
                 self.brought[at as usize] += 1;
             }
@@ -230,6 +245,7 @@ impl BalanceCensus {
         for set in &network.potentials {
             for &(i, _) in &set.members {
                 let data = &instance.variables[i as usize];
+                // A joined variable that is neither signal nor potential: the count cannot tell who owes its equation.
                 if data.causality.is_none() && self.role[data.id.index()] == BalanceRole::Own {
                     self.doubt(self.holder[data.id.index()]);
                 }
@@ -237,6 +253,7 @@ impl BalanceCensus {
         }
     }
 
+    /// Counts what components owe. An input without a binding is owed by the component around.
     fn debts(&mut self) {
         for (i, role) in self.role.iter().enumerate() {
             let holder = self.holder[i] as usize;
@@ -244,6 +261,7 @@ impl BalanceCensus {
                 BalanceRole::Own | BalanceRole::Flow => self.owed[holder] += 1,
                 BalanceRole::Input => {
                     let v = VarId(u32::try_from(i).expect("limited sizes"));
+                    // Inputs of the model itself are given from outside.
                     if holder != 0 && !self.bound.contains(&v) {
                         self.owed[self.around[holder] as usize] += 1;
                     }
@@ -254,11 +272,12 @@ impl BalanceCensus {
     }
 }
 
+/// A length as a signed number.
 fn count(n: usize) -> i64 {
     i64::try_from(n).expect("limited sizes")
 }
 
-/// The variable that an expression is.
+/// The variable that an expression is; `None` for other expressions.
 pub(super) fn as_variable(flat: &FlatModel, e: ExprId) -> Option<VarId> {
     match flat.exprs.node(e) {
         ExprNode::Var(v) => Some(v),
@@ -266,6 +285,7 @@ pub(super) fn as_variable(flat: &FlatModel, e: ExprId) -> Option<VarId> {
     }
 }
 
+/// By instance: the component that it is part of.
 fn components(instance: &Instance<'_, '_>, flat: &FlatModel, scopes: &[ScopeId]) -> Vec<u32> {
     let mut owner: Vec<u32> = Vec::with_capacity(scopes.len());
     for (i, &scope) in (0u32..).zip(scopes) {
@@ -280,17 +300,21 @@ fn components(instance: &Instance<'_, '_>, flat: &FlatModel, scopes: &[ScopeId])
     owner
 }
 
+/// Whether the class of a scope is a connector.
 fn is_connector(instance: &Instance<'_, '_>, scope: ScopeId) -> bool {
     matches!(instance.scope(scope).template.kind, ClassKind::Connector { .. })
 }
 
-/// Disjoint sets of variables, each set within one component.
+/// Disjoint sets of variables. A key is the component in which variables are joined, and the variable, so each set
+/// stays within one component.
 #[derive(Default)]
 pub(super) struct VariableGroups {
+    /// By key: a key nearer to the root. A key without an entry is a root.
     parent: FxHashMap<(u32, u32), (u32, u32)>,
 }
 
 impl VariableGroups {
+    /// The key that stands for the set of a key.
     pub(super) fn root(&mut self, mut key: (u32, u32)) -> (u32, u32) {
         while let Some(&up) = self.parent.get(&key).filter(|up| **up != key) {
             key = up;
@@ -298,7 +322,7 @@ impl VariableGroups {
         key
     }
 
-    /// True if the two were apart.
+    /// Joins two sets. True if they were apart.
     pub(super) fn join(&mut self, a: (u32, u32), b: (u32, u32)) -> bool {
         let (a, b) = (self.root(a), self.root(b));
         if a != b {

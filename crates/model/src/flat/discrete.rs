@@ -1,4 +1,8 @@
-//! What changes at events only must be given so: a `discrete` or Integer variable by its equation, `pre` by its argument.
+//! Checks of discrete variables: what changes at events only must get its value in a way that changes at events only.
+//!
+//! Enters: the flat model before the pool of expressions moves into it. Leaves: messages in the instance. `flatten`
+//! calls [`check`] once. The rules are those of variability of expressions (MLS 3.8) and of discrete-time variables
+//! (MLS 4.4.4).
 
 use super::{FlatEquation, FlatModel, OriginKind, ScalarType, Variability, WhenAction, WhenClause};
 use crate::instance::Instance;
@@ -6,7 +10,7 @@ use bramah_expr::{ExprId, ExprNode, UnaryFunction, VarId};
 use bramah_syntax::diag::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Tells what is wrong; the expressions are still those of the instance.
+/// Reports all violations. The expressions are still those of the instance.
 pub(super) fn check(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(WhenClause::assigned).collect();
     check_equations(instance, flat, &assigned);
@@ -15,7 +19,7 @@ pub(super) fn check(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     check_pre(instance, flat, &assigned);
 }
 
-/// The variable that a side of an equation is, with the other side.
+/// The sides of an equation that are variables, each with the other side.
 fn bare(instance: &Instance<'_, '_>, e: &FlatEquation) -> impl Iterator<Item = (VarId, ExprId)> + use<> {
     let of = |side, other| match instance.exprs.node(side) {
         ExprNode::Var(v) => Some((v, other)),
@@ -24,7 +28,10 @@ fn bare(instance: &Instance<'_, '_>, e: &FlatEquation) -> impl Iterator<Item = (
     [of(e.lhs, e.rhs), of(e.rhs, e.lhs)].into_iter().flatten()
 }
 
+/// Checks equations for `discrete` Reals and Integers. A value that changes between events is an error unless another
+/// equation gives the variable a discrete value. A `discrete` Real must get its value in a `when`.
 fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHashSet<VarId>) {
+    // Discrete unknowns outside of `when`: those that a `when` assigns are determined there.
     let stepping = |v: VarId| {
         let variable = &flat.variables[v.index()];
         let declared = variable.variability == Variability::Discrete || variable.ty == ScalarType::Integer;
@@ -36,6 +43,7 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
         for (v, other) in bare(instance, e).filter(|b| stepping(b.0)) {
             if instance.variability(other) <= Variability::Discrete {
                 given.insert(v);
+            // An equation between two variables may determine the other one.
             } else if !matches!(instance.exprs.node(other), ExprNode::Var(_)) && is_smooth(instance, other) {
                 doubtful.push((v, e.origin.span));
             }
@@ -49,6 +57,7 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
                 && !variable.input
                 && !assigned.contains(&v)
                 && !matches!(instance.exprs.node(other), ExprNode::Var(_));
+            // Equations of connections give values without a `when`, too.
             let written = matches!(e.origin.kind, OriginKind::Declared | OriginKind::Binding);
             if own && written && instance.variability(other) <= Variability::Discrete {
                 let message = format!("`{}` is `discrete` and gets its value outside `when`", variable.name);
@@ -61,6 +70,7 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
             }
         }
     }
+    // An equation in doubt may determine something else, if another one gives the variable its value.
     for (v, span) in doubtful.into_iter().filter(|(v, _)| !given.contains(v)) {
         let variable = &flat.variables[v.index()];
         let kind = if variable.ty == ScalarType::Integer { "an Integer" } else { "`discrete`" };
@@ -72,7 +82,8 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
     }
 }
 
-/// `n = n + 1` in a `when` asks for a whole number that is its own successor; `pre(n) + 1` was meant.
+/// Checks that a value assigned in a `when` does not read the variable itself: `n = n + 1` asks for a whole number that
+/// is its own successor; `pre(n) + 1` was meant. For a Real it would be an equation that can be solved.
 fn check_own_values(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     for action in flat.whens.iter().flat_map(|w| &w.branches).flat_map(|b| &b.actions) {
         let WhenAction::Assign { variable, value, origin } = action else { continue };
@@ -88,7 +99,8 @@ fn check_own_values(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     }
 }
 
-/// `reinit` of one variable stands in one `when` only (MLS 8.3.6): of two that fire at once neither would say the value.
+/// Checks that `reinit` of one variable occurs in one `when` clause only (MLS 8.3.6). If two fired at once, the value
+/// would be undefined. Only the first conflict is reported.
 fn check_reinits(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     let mut first: FxHashMap<VarId, (usize, Span)> = FxHashMap::default();
     for (clause, when) in flat.whens.iter().enumerate() {
@@ -109,7 +121,8 @@ fn check_reinits(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     }
 }
 
-/// Neither calls nor switches: what these give may be constant between events all the same.
+/// Whether an expression has neither calls nor conditions nor steps. The value of what has some may be constant between
+/// events although its variability is continuous.
 fn is_smooth(instance: &Instance<'_, '_>, e: ExprId) -> bool {
     let steps = |e: &ExprId| match instance.exprs.node(*e) {
         ExprNode::Unary(op, _) => matches!(op, UnaryFunction::Floor | UnaryFunction::Sign),
@@ -118,6 +131,7 @@ fn is_smooth(instance: &Instance<'_, '_>, e: ExprId) -> bool {
     !instance.exprs.reachable(&[e], |_| true).iter().any(steps)
 }
 
+/// Checks that `pre` of a continuous variable does not occur outside `when` clauses.
 fn check_pre(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHashSet<VarId>) {
     let smooth = |v: VarId| {
         let variable = flat.variables.get(v.index());
@@ -125,6 +139,7 @@ fn check_pre(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHas
             && !assigned.contains(&v)
     };
     let wrong = |e: ExprId| matches!(instance.exprs.node(e), ExprNode::Pre(v) if smooth(v));
+    // Most models have no such node at all.
     if !(0..).map(ExprId).take(instance.exprs.len()).any(wrong) {
         return;
     }

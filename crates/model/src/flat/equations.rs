@@ -59,7 +59,6 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
                 self.body(body, LookupContext { scope, base: i });
             }
             // Messages of a library component get the place of the component in the user's model.
-            // Messages of a library component get the place of the component in the user's model.
             if self.instance.diagnostics.len() > mark
                 && let Some(outermost) = self.instance.outermost(scope)
             {
@@ -131,7 +130,6 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     /// Reads one equation and appends its scalar equations to `out`.
     pub(super) fn equation(&mut self, e: &'a ast::Equation, view: LookupContext, out: &mut Vec<EquationSides>) {
         match &e.kind {
-            // `network` has read connections.
             // `network` has read connections.
             EquationKind::Connect(..) => {}
             EquationKind::Equal(l, r) => self.equal(l, r, view, e.span, out),
@@ -225,7 +223,6 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         out: &mut Vec<EquationSides>,
     ) {
         // Of several results of a call an expression takes the first (MLS 12.4.3).
-        // Of several results of a call an expression takes the first (MLS 12.4.3).
         let first = |v: &ModelicaValue| match v {
             ModelicaValue::Tuple(values) => values[0].clone(),
             other => other.clone(),
@@ -272,7 +269,6 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
             return;
         };
         // A parameter that is found at the start is not known now.
-        // A parameter that is found at the start is not known now.
         if self.instance.variability(test) <= Variability::Parameter && !self.instance.found_at_start(test) {
             match self.instance.evaluator().constant_boolean(condition, view) {
                 Some(true) => {
@@ -285,7 +281,6 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
             }
             return;
         }
-        // Both branches are read, each under its condition, with the following branches nested in `else`.
         // Both branches are read, each under its condition, with the following branches nested in `else`.
         self.guards.push(test);
         let a = self.equations(body, view);
@@ -319,14 +314,12 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
         let pool = &mut self.instance.exprs;
         for p in a {
             // Equations with the same left side belong together; the others are paired in their order.
-            // Equations with the same left side belong together; the others are paired in their order.
             let at = b.iter().position(|q| q.lhs == p.lhs).unwrap_or(0);
             let q = b.remove(at);
             let span = p.span;
             if p.lhs == q.lhs {
                 out.push(EquationSides { lhs: p.lhs, rhs: pool.if_(test, p.rhs, q.rhs), span });
             } else {
-                // Different left sides: the residuals are selected instead.
                 // Different left sides: the residuals are selected instead.
                 let (x, y) = (pool.sub(p.lhs, p.rhs), pool.sub(q.lhs, q.rhs));
                 out.push(EquationSides { lhs: pool.if_(test, x, y), rhs: Exprs::ZERO, span });
@@ -424,7 +417,6 @@ pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls
     for call in calls {
         let origin = ElementOrigin { span: call.span, instance: holder, kind: OriginKind::Declared };
         let Some(assert) = assert_of(instance, call, origin) else { continue };
-        // Repetitions come from one expression, so the last few assertions are enough to compare with.
         // Repetitions come from one expression, so the last few assertions are enough to compare with.
         let known = |a: &FlatAssertion| a.condition == assert.condition && a.origin.span == origin.span;
         if assert.condition != Exprs::ONE && !flat.asserts.iter().rev().take(8).any(known) {

@@ -30,7 +30,6 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResul
     flat.experiment = experiment(instance);
     flat.varied = instance.varied;
     // Before any expression is evaluated: `inStream` needs to know the joined streams.
-    // Before any expression is evaluated: `inStream` needs to know the joined streams.
     streams::prepare(instance, network);
     variables(instance, &numbers, &mut flat);
     instance.parameters().check_texts();
@@ -39,7 +38,6 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResul
     overconstrained::equations(instance, network, &numbers, &mut flat);
     streams::equations(instance, network, &numbers, &mut flat);
     discrete::check(instance, &flat);
-    // After all evaluation: only then it is known which parameters the structure depends on.
     // After all evaluation: only then it is known which parameters the structure depends on.
     for (v, &i) in flat.variables.iter_mut().zip(&instance.order) {
         if v.variability == Variability::Parameter && instance.variables[i as usize].structural {
@@ -52,11 +50,9 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResul
         .map(|e| (e.name.clone(), e.literals.iter().map(|l| l.as_str().to_string()).collect()))
         .collect();
     // Before the pool moves out of the instance, which evaluates types for this.
-    // Before the pool moves out of the instance, which evaluates types for this.
     let constraints = instance.builder().constraint_sizes();
     flat.exprs = std::mem::take(&mut instance.exprs);
     let mut diagnostics = std::mem::take(&mut instance.diagnostics);
-    // With equations missing because of errors, the counts would mislead.
     // With equations missing because of errors, the counts would mislead.
     if !diagnostics.iter().any(Diagnostic::is_error) {
         let census = BalanceCensus::take(instance, network, &flat, &scopes, &constraints);
@@ -101,7 +97,6 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &ComponentNumbers,
     let data = &instance.variables[i as usize];
     let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::Declared };
     // Only inputs and outputs of the model itself connect to the outside.
-    // Only inputs and outputs of the model itself connect to the outside.
     let input = data.top && data.causality == Some(ast::CausalityPrefix::Input);
     let output = data.top && data.causality == Some(ast::CausalityPrefix::Output);
     let mut v = FlatVariable {
@@ -144,7 +139,6 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
                 v.display_unit =
                     instance.parameters().text_attribute(i, "displayUnit").filter(|u| !u.is_empty()).map(Into::into);
             }
-            // Evaluated for its errors only.
             // Evaluated for its errors only.
             "quantity" => {
                 instance.parameters().text_attribute(i, "quantity");
@@ -243,7 +237,6 @@ fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
 fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: &mut FlatModel) {
     let parameter = v.variability <= Variability::Parameter;
     // The binding of a stream variable of a port applies only where the component has no parts joined to the port.
-    // The binding of a stream variable of a port applies only where the component has no parts joined to the port.
     if instance.streams.outside.contains(&i) {
         return;
     }
@@ -258,7 +251,6 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: 
     let Some(value) = value else { return };
     let Some(value) = instance.parameters().coerce(value, v.ty, &v.name, b.expr.span) else { return };
     let Some((e, _)) = value.scalar() else { return };
-    // Calls inside the binding may assert something about their arguments.
     // Calls inside the binding may assert something about their arguments.
     equations::watch(instance, flat, watched, v.origin.instance);
     if v.variability == Variability::Constant && instance.variability(e) == Variability::Parameter {
@@ -322,7 +314,6 @@ fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) 
 /// Appends the equations of connections: potentials equal, flows summed, open flows zero (MLS 9.2).
 fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &ComponentNumbers, flat: &mut FlatModel) {
     // A set of `n` potentials gives `n - 1` equations, each with the first member.
-    // A set of `n` potentials gives `n - 1` equations, each with the first member.
     for set in &network.potentials {
         let first = instance.variables[set.members[0].0 as usize].id;
         let lhs = instance.exprs.var(first);
@@ -334,7 +325,6 @@ fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Com
     }
     for set in &network.flows {
         let mut sum: Option<ExprId> = None;
-        // Flows of inside connectors count positive, those of outside connectors negative (MLS 9.2).
         // Flows of inside connectors count positive, those of outside connectors negative (MLS 9.2).
         for &(i, outside) in &set.members {
             let e = instance.exprs.var(instance.variables[i as usize].id);
@@ -349,14 +339,12 @@ fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Com
         flat.equations.push(FlatEquation { lhs: sum.unwrap_or(Exprs::ZERO), rhs: Exprs::ZERO, origin });
     }
     // Members of a bus that nothing gives a value.
-    // Members of a bus that nothing gives a value.
     for &i in &network.unused {
         let data = &instance.variables[i as usize];
         let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::OpenPort };
         let lhs = instance.exprs.var(data.id);
         flat.equations.push(FlatEquation { lhs, rhs: Exprs::ZERO, origin });
     }
-    // Flows of ports that nothing is connected to from outside.
     // Flows of ports that nothing is connected to from outside.
     for &i in &network.open {
         let data = &instance.variables[i as usize];

@@ -1,4 +1,7 @@
-//! Overconstrained components that are equal by the constraint of their type (MLS 9.4).
+//! Equations of overconstrained connections that the connection graph breaks (MLS 9.4).
+//!
+//! Such a connection states equality by the function `equalityConstraint` of its type, which has fewer results than the
+//! type has components. `network` decides which connections these are; `flatten` calls [`equations`].
 
 use super::equations::assert_of;
 use super::numbers::ComponentNumbers;
@@ -7,7 +10,8 @@ use crate::instance::Instance;
 use crate::network::Network;
 use bramah_expr::Exprs;
 
-/// The equations of connections that the connection graph breaks.
+/// Appends an equation `residue = 0` for each constraint of each broken connection, and the assertions of the
+/// functions.
 pub(super) fn equations(
     instance: &mut Instance<'_, '_>,
     network: &Network,
@@ -15,6 +19,7 @@ pub(super) fn equations(
     flat: &mut FlatModel,
 ) {
     for link in &network.constrained {
+        // `None` after a message.
         let Some(residue) = instance.builder().constraint_residue(link.a, link.b, link.span) else { continue };
         let origin =
             ElementOrigin { span: link.span, instance: numbers.of(link.scope), kind: OriginKind::ConnectPotential };

@@ -1,4 +1,9 @@
-//! Ports that nothing is connected to, inputs without a value, and signals with two sources.
+//! Checks of ports and signals: ports that nothing is connected to, inputs without a value, and signals with two
+//! sources.
+//!
+//! Enters: the network and the census. Leaves: messages. [`open_lines`], [`uneven`] and
+//! [`SignalConnections::joined_outputs`] are reported always; [`SignalConnections::doubts`] only if the model is
+//! singular. `flatten` and `balance` call them.
 
 use super::census::{BalanceCensus, BalanceRole, VariableGroups};
 use super::numbers::ComponentNumbers;
@@ -11,7 +16,7 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
-/// Connectors whose variables are no pairs of potential and flow (MLS 9.3.1), each class once.
+/// Connectors with different numbers of potentials and flows (MLS 9.3.1), each class once.
 pub(super) fn uneven(
     instance: &Instance<'_, '_>,
     flat: &FlatModel,
@@ -41,13 +46,16 @@ pub(super) fn uneven(
     found
 }
 
-/// Hydraulic ports of components that are not connected. In other domains an open port means something: a free shaft, no
-/// heat, no current. An open hydraulic port would spill oil; whoever means a closed one says so by a plug.
+/// Hydraulic ports of components that are not connected.
+///
+/// In other domains an open port has a meaning: a free shaft, no heat, no current. An open hydraulic port would spill
+/// oil; whoever means a closed one says so by a plug.
 pub(super) fn open_lines(flat: &FlatModel, census: &BalanceCensus) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for e in flat.equations.iter().filter(|e| e.origin.kind == OriginKind::OpenPort) {
         let Some(v) = super::census::as_variable(flat, e.lhs) else { continue };
         let holder = census.holder[v.index()];
+        // Ports of the model itself may be open.
         if holder != 0 && census.role[v.index()] == BalanceRole::Flow && is_volume_flow(flat, v) {
             found.push(open_port(flat, v, holder));
         }
@@ -55,6 +63,7 @@ pub(super) fn open_lines(flat: &FlatModel, census: &BalanceCensus) -> Vec<Diagno
     found
 }
 
+/// Whether the unit of a variable has the dimension of a volume flow, which marks a hydraulic port.
 fn is_volume_flow(flat: &FlatModel, v: VarId) -> bool {
     let unit = flat.variables[v.index()].unit.as_deref().and_then(|u| MeasurementUnit::parse(u).ok());
     let volume_flow = MeasurementUnit::parse("m3/s").expect("a unit");
@@ -79,19 +88,23 @@ fn open_port(flat: &FlatModel, flow: VarId, component: u32) -> Diagnostic {
         .class(info.class.clone())
 }
 
-/// The signals joined at each level.
+/// The signals that `connect` joins, grouped by the component in which the connections stand (the level).
 pub(super) struct SignalConnections<'s> {
+    /// The flat model.
     flat: &'s FlatModel,
+    /// The roles of variables.
     census: &'s BalanceCensus,
-    /// Members of each group with the `connect` that brought them; the key is the level and the first variable.
+    /// The members of each group with the `connect` that brought them. The key is the level and the variable that
+    /// stands for the group.
     groups: BTreeMap<(u32, u32), Vec<(VarId, Span)>>,
-    /// The group, if any, that supplies an input of a component.
+    /// By input of a component: the group around the component that contains it.
     outer: FxHashMap<VarId, (u32, u32)>,
-    /// Variables in equations outside their own component.
+    /// Variables that occur in equations outside their own component.
     mentioned: FxHashSet<VarId>,
 }
 
 impl<'s> SignalConnections<'s> {
+    /// Groups the joined signals.
     pub(super) fn new(
         instance: &Instance<'_, '_>,
         network: &Network,
@@ -117,6 +130,7 @@ impl<'s> SignalConnections<'s> {
         for (key, span) in members {
             let v = instance.variables[key.1 as usize].id;
             let group = sets.root(key);
+            // Seen from the level, the variable belongs to a component inside it.
             if census.holder[v.index()] != key.0 {
                 outer.insert(v, group);
             }
@@ -125,25 +139,26 @@ impl<'s> SignalConnections<'s> {
         SignalConnections { flat, census, groups, outer, mentioned: mentioned(flat, census) }
     }
 
-    /// Signals that cannot work: inputs without a value, or with two.
+    /// Signals that cannot work: inputs with two sources, then inputs without a value.
     pub(super) fn doubts(&self) -> Vec<Diagnostic> {
         let mut found = self.two_sources(|_| true);
         found.extend(self.without_source());
         found
     }
 
-    /// Outputs of blocks that `connect` joins, which is wrong whatever the equations say (MLS 9.3).
+    /// Outputs that `connect` joins. That is wrong whatever the equations say (MLS 9.3).
     pub(super) fn joined_outputs(&self) -> Vec<Diagnostic> {
         let causal = |v: VarId| matches!(self.census.role[v.index()], BalanceRole::Input | BalanceRole::Own);
         self.two_sources(|members| members.iter().all(|(v, _)| causal(*v)))
     }
 
+    /// The name of a variable.
     fn name(&self, v: VarId) -> &str {
         &self.flat.variables[v.index()].name
     }
 
-    /// Whether a member gives the group its value: an output of a component, an input of the level itself, or anything
-    /// that an equation of the level may determine.
+    /// Whether a member gives the group its value: an output of a component inside, an input of the level itself, or
+    /// anything that an equation may determine.
     fn is_source(&self, level: u32, v: VarId) -> bool {
         let outside = self.census.holder[v.index()] == level;
         match self.census.role[v.index()] {
@@ -153,12 +168,13 @@ impl<'s> SignalConnections<'s> {
         }
     }
 
-    /// Groups of those wanted that have two sources.
+    /// A message for each group that has two sources, among those for which `wanted` is true.
     fn two_sources(&self, wanted: impl Fn(&[(VarId, Span)]) -> bool) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         for (&(level, _), members) in self.groups.iter().filter(|(_, members)| wanted(members)) {
             let sources: Vec<_> = members.iter().filter(|(v, _)| self.is_source(level, *v)).collect();
             let [(a, at_a), .., (b, at_b)] = sources.as_slice() else { continue };
+            // A member that needs a value gives the message a place to speak of.
             let fed = members.iter().find(|(v, _)| !self.is_source(level, *v));
             let place = fed.map_or(String::new(), |(v, _)| format!(" of `{}`", self.name(*v)));
             let made = Diagnostic::new(
@@ -172,7 +188,8 @@ impl<'s> SignalConnections<'s> {
         found
     }
 
-    /// Inputs of components that get no value.
+    /// A message for each input of a component that gets no value. Of inputs that are joined with each other only one
+    /// is reported.
     fn without_source(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         let mut reported: FxHashSet<(u32, u32)> = FxHashSet::default();
@@ -204,6 +221,7 @@ impl<'s> SignalConnections<'s> {
         found
     }
 
+    /// The message about one input. `group` are the signals that it is joined with, if any.
     fn no_value(&self, v: VarId, holder: u32, group: Option<&[(VarId, Span)]>) -> Diagnostic {
         let info = &self.flat.instances[holder as usize];
         let name = self.name(v);
@@ -221,7 +239,8 @@ impl<'s> SignalConnections<'s> {
     }
 }
 
-/// Variables that an equation outside their own component speaks of.
+/// Variables that an equation or `when` outside their own component mentions. Empty where no component has inputs,
+/// since only then they are asked for.
 fn mentioned(flat: &FlatModel, census: &BalanceCensus) -> FxHashSet<VarId> {
     let mut found = FxHashSet::default();
     let inputs = census.role.iter().zip(&census.holder).any(|(r, h)| *r == BalanceRole::Input && *h != 0);
@@ -230,6 +249,7 @@ fn mentioned(flat: &FlatModel, census: &BalanceCensus) -> FxHashSet<VarId> {
     }
     let mut by_owner: BTreeMap<u32, Vec<_>> = BTreeMap::new();
     for e in &flat.equations {
+        // Equations of connections say who is joined, not who gives a value.
         let connection =
             matches!(e.origin.kind, OriginKind::ConnectPotential | OriginKind::ConnectFlow | OriginKind::OpenPort);
         if !connection {

@@ -1,4 +1,6 @@
 //! The flat model as text, close to flat Modelica, for `check --emit flat` and for tests.
+//!
+//! The text is for readers and is not parsed anywhere. Names of variables keep their dots and indices.
 
 use super::{
     FlatEquation, FlatModel, FlatVariable, MessagePart, MessageTemplate, ScalarType, Variability, WhenAction,
@@ -8,7 +10,8 @@ use bramah_expr::{ExprId, Exprs, VarId};
 use std::fmt::Write;
 
 impl FlatModel {
-    /// Variables, equations, initial equations, `when` clauses and assertions, in their order.
+    /// The model as text: variables, equations, `when` clauses, assertions, conserved quantities and initial equations,
+    /// each in the order of the model.
     pub fn text(&self) -> String {
         let mut out = format!("model '{}'\n", self.class);
         for variable in &self.variables {
@@ -32,14 +35,17 @@ impl FlatModel {
         out
     }
 
+    /// An expression with the names of variables.
     fn expr(&self, e: ExprId) -> String {
         self.exprs.print(e, &|v| self.name(v))
     }
 
+    /// The name of a variable.
     fn name(&self, v: VarId) -> String {
         self.variables[v.index()].name.clone()
     }
 
+    /// Appends a section with its title and its equations.
     fn section(&self, out: &mut String, title: &str, equations: &[FlatEquation]) {
         let _ = writeln!(out, "{title}");
         for e in equations {
@@ -47,6 +53,7 @@ impl FlatModel {
         }
     }
 
+    /// The declaration of a variable: prefixes, type, name, modifiers, binding, description.
     fn declaration(&self, v: &FlatVariable) -> String {
         let mut text = String::new();
         for (holds, word) in [(v.hidden, "protected "), (v.flow, "flow "), (v.input, "input "), (v.output, "output ")] {
@@ -78,6 +85,7 @@ impl FlatModel {
         text + ";"
     }
 
+    /// The attributes of a variable that differ from their defaults.
     fn modifiers(&self, v: &FlatVariable) -> Vec<String> {
         let quoted = |name: &str, text: &Option<Box<str>>| text.as_ref().map(|t| format!("{name} = {t:?}"));
         let value = |name: &str, e: Option<ExprId>| e.map(|e| format!("{name} = {}", self.expr(e)));
@@ -88,11 +96,13 @@ impl FlatModel {
             value("max", v.max),
             value("nominal", v.nominal),
             value("start", v.start),
+            // `fixed = true` is the default of parameters.
             (v.fixed && v.variability > Variability::Parameter).then(|| "fixed = true".to_owned()),
         ];
         all.into_iter().flatten().collect()
     }
 
+    /// Appends a `when` clause. Each branch lists its conditions as an array, as the flat model has it.
     fn when(&self, out: &mut String, when: &WhenClause) {
         for (i, branch) in when.branches.iter().enumerate() {
             let conditions: Vec<String> = branch.conditions.iter().map(|&c| self.expr(c)).collect();
@@ -105,6 +115,7 @@ impl FlatModel {
         out.push_str("  end when;\n");
     }
 
+    /// A statement of a `when` as text.
     fn action(&self, action: &WhenAction) -> String {
         match action {
             WhenAction::Assign { variable, value, .. } => format!("{} = {}", self.name(*variable), self.expr(*value)),
@@ -118,10 +129,12 @@ impl FlatModel {
         }
     }
 
+    /// A statement inside `if`, unless its guard always holds.
     fn guarded(&self, guard: ExprId, action: String) -> String {
         if guard == Exprs::ONE { action } else { format!("if {} then {action}; end if", self.expr(guard)) }
     }
 
+    /// A message as a concatenation of texts and values.
     fn message(&self, message: &MessageTemplate) -> String {
         let part = |part: &MessagePart| match part {
             MessagePart::Text(text) => format!("{text:?}"),

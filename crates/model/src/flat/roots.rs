@@ -1,16 +1,19 @@
-//! Every expression of a flat model.
+//! The list of all expressions of a flat model, for what must change every one of them.
+//!
+//! A new field with expressions must be added to [`FlatModel::roots`], else compaction leaves stale expressions in it.
 
 use super::{FlatAssertion, FlatModel, MessagePart, WhenAction};
 use bramah_expr::ExprId;
 
 impl FlatModel {
-    /// Drops expressions that nothing refers to.
+    /// Drops expressions that nothing refers to. All `ExprId`s of the model are renumbered.
     pub(super) fn compact(&mut self) {
         let mut pool = std::mem::take(&mut self.exprs);
         pool.compact(&mut self.roots());
         self.exprs = pool;
     }
 
+    /// References to all expressions that the model holds.
     fn roots(&mut self) -> Vec<&mut ExprId> {
         let mut roots: Vec<&mut ExprId> = Vec::new();
         for v in &mut self.variables {
@@ -29,6 +32,7 @@ impl FlatModel {
     }
 }
 
+/// Adds the expressions of a statement in a `when`.
 fn action<'m>(a: &'m mut WhenAction, roots: &mut Vec<&'m mut ExprId>) {
     match a {
         WhenAction::Assign { value, .. } => roots.push(value),
@@ -41,11 +45,13 @@ fn action<'m>(a: &'m mut WhenAction, roots: &mut Vec<&'m mut ExprId>) {
     }
 }
 
+/// Adds the expressions of an assertion.
 fn assert<'m>(a: &'m mut FlatAssertion, roots: &mut Vec<&'m mut ExprId>) {
     roots.push(&mut a.condition);
     parts(&mut a.message.parts, roots);
 }
 
+/// Adds the values inside a message.
 fn parts<'m>(parts: &'m mut [MessagePart], roots: &mut Vec<&'m mut ExprId>) {
     roots.extend(parts.iter_mut().filter_map(|p| match p {
         MessagePart::Value(e, _) => Some(e),

@@ -1,5 +1,9 @@
-//! Stream variables: what a flow carries with it (MLS 15). What comes into a component is mixed from what the others of its
-//! connection set send out, each weighed by its flow.
+//! Stream variables: what a flow carries with it, such as its enthalpy (MLS chapter 15).
+//!
+//! What enters a component is mixed from what the other members of its connection set send out, each weighed by its
+//! flow into the node. [`prepare`] gives the instance the connection sets before expressions are evaluated, so that
+//! `inStream` has a meaning; [`equations`] states what leaves through ports of components that have parts inside.
+//! `flatten` calls both.
 
 use super::{ElementOrigin, FlatEquation, FlatModel, OriginKind};
 use crate::instance::{Instance, MixingJunction, StreamMember};
@@ -8,7 +12,8 @@ use crate::network::Network;
 use super::numbers::ComponentNumbers;
 use petgraph::unionfind::UnionFind;
 
-/// Tells the instance which stream variables are joined, so that `inStream` has a meaning in its equations.
+/// Stores in the instance which stream variables are joined. Outside connectors are those of the component that
+/// contains the connections.
 pub(super) fn prepare(instance: &mut Instance<'_, '_>, network: &Network) {
     for set in &network.streams {
         let number = instance.streams.sets.len();
@@ -24,10 +29,13 @@ pub(super) fn prepare(instance: &mut Instance<'_, '_>, network: &Network) {
     junctions(instance);
 }
 
-/// Finds the nodes with a component that mixes: a node reaches through the ports of components that have parts inside. Of
-/// several that mix the one declared first is the junction, and the others hang on it.
+/// Finds the nodes with a component that mixes, and records them as junctions.
+///
+/// A node extends through the ports of components that have parts inside. Of several mixing components at one node the
+/// one declared first is the junction; the others are connected to it like any other component.
 fn junctions(instance: &mut Instance<'_, '_>) {
     let streams = &instance.streams;
+    // Sets that share a port, once from inside and once from outside, are one node.
     let mut nodes = UnionFind::new(streams.sets.len());
     for (i, set) in streams.sets.iter().enumerate() {
         for around in set.iter().filter(|m| m.outside).filter_map(|m| streams.inside.get(&m.variable)) {
@@ -43,6 +51,7 @@ fn junctions(instance: &mut Instance<'_, '_>) {
     let mut all = Vec::new();
     for (i, mut others) in leaves.into_iter().enumerate() {
         let mixing = others.iter().map(|m| m.variable).filter(|&v| instance.variables[v as usize].mixes);
+        // Most nodes have no mixing component; their streams are mixed by the equations of `inStream`.
         let Some(mixer) = mixing.min() else { continue };
         others.retain(|m| m.variable != mixer);
         found[i] = Some(all.len());
@@ -52,8 +61,8 @@ fn junctions(instance: &mut Instance<'_, '_>) {
     instance.streams.junctions = all;
 }
 
-/// What leaves through the ports of a component itself is the mixture of what its parts send there. Parts come before what
-/// holds them, so that numbers are passed on.
+/// Appends an equation for each stream variable of a port whose component has parts joined to it: what leaves is the
+/// mixture of what the parts send there.
 pub(super) fn equations(
     instance: &mut Instance<'_, '_>,
     network: &Network,
@@ -61,6 +70,7 @@ pub(super) fn equations(
     flat: &mut FlatModel,
 ) {
     let mut sets: Vec<_> = network.streams.iter().enumerate().collect();
+    // Parts have larger numbers than what contains them. They come first, so that the mixture outside can read theirs.
     sets.sort_by_key(|(_, set)| std::cmp::Reverse(numbers.of(set.scope)));
     for (number, set) in sets {
         for member in set.members.iter().filter(|m| m.outside) {

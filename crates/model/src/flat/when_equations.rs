@@ -27,14 +27,12 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
             self.watch(view);
             let mut actions = Vec::new();
             // The body is evaluated at the event, so relations in it make no events of their own.
-            // The body is evaluated at the event, so relations in it make no events of their own.
             let was = self.instance.statements().set_no_event(true);
             for e in body {
                 self.when_body(e, view, Exprs::ONE, &mut actions);
             }
             self.instance.statements().set_no_event(was);
             when.branches.push(WhenBranch { conditions, actions });
-            // The list starts empty for each branch.
             // The list starts empty for each branch.
             let here = std::mem::take(&mut self.determined);
             match &first {
@@ -87,7 +85,6 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
             EquationKind::Equal(l, r) => {
                 let mut pairs = Vec::new();
                 self.equal(l, r, view, e.span, &mut pairs);
-                // Assertions of functions that the equation calls become actions: they are checked at the event only.
                 // Assertions of functions that the equation calls become actions: they are checked at the event only.
                 for mut call in self.instance.statements().take_calls() {
                     call.guard = self.instance.exprs.and(guard, call.guard);
@@ -172,7 +169,6 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
         if !chosen {
             self.same_variables(&first, &second, "if", condition.span);
         }
-        // What both branches determine is determined once by the whole `if`.
         // What both branches determine is determined once by the whole `if`.
         for &v in first.iter().filter(|v| second.contains(v)) {
             self.determine(v, condition.span);

@@ -1,4 +1,8 @@
-//! `connect` equations to connection sets (MLS 9.2).
+//! From `connect` equations to connection sets (MLS 9.2).
+//!
+//! Enters: the equation sections of all components. Leaves: the sets of a [`Network`]. [`ConnectionCollector::collect`]
+//! walks the components, resolves both sides of each `connect`, checks that they fit (MLS 9.3), and joins their
+//! variables, element by element, in union-find structures for potentials, flows and streams.
 
 use super::overconstrained::{OverconstrainedLink, VirtualConnectionGraph, is_graph_statement};
 use super::{Connection, FlowSet, Network, PotentialSet, SignalPair, StreamSet};
@@ -13,15 +17,20 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use bramah_syntax::symbol::Symbol;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// Disjoint sets over numbers given on demand.
+/// Union-find over variables. A key is a variable and whether it is seen as an outside connector; keys get numbers in
+/// the order in which they come.
 #[derive(Default)]
 struct ConnectionSets {
+    /// By key: its number.
     index: FxHashMap<(u32, bool), usize>,
+    /// By number: the key, with the first `connect` that joined it and the instance in which that stands.
     keys: Vec<((u32, bool), Span, ScopeId)>,
+    /// By number: a number nearer to the root of its set.
     parent: Vec<usize>,
 }
 
 impl ConnectionSets {
+    /// The number of a key. A new key gets the next number and a set of its own.
     fn key(&mut self, key: (u32, bool), span: Span, scope: ScopeId) -> usize {
         *self.index.entry(key).or_insert_with(|| {
             self.keys.push((key, span, scope));
@@ -30,6 +39,7 @@ impl ConnectionSets {
         })
     }
 
+    /// The number that stands for the set of a number. Halves the path on the way.
     fn root(&mut self, mut i: usize) -> usize {
         while self.parent[i] != i {
             self.parent[i] = self.parent[self.parent[i]];
@@ -38,12 +48,14 @@ impl ConnectionSets {
         i
     }
 
+    /// Joins two sets.
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         // The smaller number stays the root, so that sets come out in the order of their first member.
         self.parent[a.max(b)] = a.min(b);
     }
 
+    /// All sets, in the order of their first members, which come in the order of their numbers.
     fn groups(mut self) -> Vec<Vec<((u32, bool), Span, ScopeId)>> {
         let mut place: FxHashMap<usize, usize> = FxHashMap::default();
         let mut groups: Vec<Vec<_>> = Vec::new();
@@ -59,32 +71,44 @@ impl ConnectionSets {
     }
 }
 
-/// One end of a connection.
+/// One side of a `connect`.
 struct ConnectionEnd {
+    /// The ports that it names, with the sizes of the array if it is one.
     selection: NodeSelection,
+    /// Whether it is an outside connector: a connector of the component in which the `connect` stands (MLS 9.1.2).
     outside: bool,
 }
 
+/// Collects connections while the components are walked.
 #[derive(Default)]
 pub(super) struct ConnectionCollector {
+    /// The result so far.
     network: Network,
+    /// Sets of potentials. They make no difference between inside and outside.
     potentials: ConnectionSets,
+    /// Sets of flows, with inside and outside apart.
     flows: ConnectionSets,
+    /// Sets of stream variables, with inside and outside apart.
     streams: ConnectionSets,
+    /// The connection graph of overconstrained components.
     forest: VirtualConnectionGraph,
 }
 
 impl ConnectionCollector {
+    /// Walks all components and returns the network.
     pub(super) fn collect(mut self, instance: &mut Instance<'_, '_>) -> Network {
         for scope in component_scopes(instance) {
             self.scope(instance, scope);
         }
+        // After all components: the spanning trees depend on the whole graph.
         self.overconstrained(instance);
+        // A flow that occurs only as an outside connector is still open from outside.
         let inside: std::collections::BTreeSet<u32> =
             self.flows.keys.iter().filter(|(k, ..)| !k.1).map(|(k, ..)| k.0).collect();
         let joined: FxHashSet<u32> = self.potentials.keys.iter().chain(&self.flows.keys).map(|(k, ..)| k.0).collect();
         self.network.unused = (0u32..)
             .zip(&instance.variables)
+            // Variables that are not in the flat model have no number.
             .filter(|(i, v)| {
                 !joined.contains(i) && v.id.0 != u32::MAX && instance.scope(v.scope).template.is_expandable()
             })
@@ -121,7 +145,8 @@ impl ConnectionCollector {
         self.network
     }
 
-    /// Joins overconstrained components along the spanning trees of their graph; the other ones are equal by constraint.
+    /// Joins overconstrained components along the spanning trees of their graph. The other connections become
+    /// constraints.
     fn overconstrained(&mut self, instance: &mut Instance<'_, '_>) {
         let (links, spanned) = std::mem::take(&mut self.forest).span(instance);
         for (link, kept) in links.into_iter().zip(spanned.kept) {
@@ -135,6 +160,7 @@ impl ConnectionCollector {
         (instance.overconstrained.roots, instance.overconstrained.rooted) = (spanned.roots, spanned.rooted);
     }
 
+    /// Reads the equation sections of one component, with those of its base classes.
     fn scope<'a>(&mut self, instance: &mut Instance<'a, '_>, scope: ScopeId) {
         let template = instance.scope(scope).template.clone();
         for (base, i) in template.bases.iter().zip(0u32..) {
@@ -144,6 +170,7 @@ impl ConnectionCollector {
         }
     }
 
+    /// Reads the connections in a list of equations. `for` loops are unrolled, `if` branches selected.
     fn equations<'a>(
         &mut self,
         instance: &mut Instance<'a, '_>,
@@ -163,11 +190,14 @@ impl ConnectionCollector {
                         self.forest.add(instance, function, args, view, e.span);
                     }
                 }
+                // Loops without connections are not unrolled here; that is left to `flat`.
                 EquationKind::For { iterators, body } if concerns_network(body) => {
                     instance.statements().for_each(iterators, LoopBody::Equations(body), view, &mut |instance| {
                         self.equations(instance, body, view, base);
                     });
                 }
+                // The condition of connections must be a parameter expression (MLS 8.3.3), so a branch can be selected
+                // now.
                 EquationKind::If { branches, otherwise } => {
                     let connects = branches.iter().any(|(_, b)| concerns_network(b)) || concerns_network(otherwise);
                     if connects && let Some(body) = choose(instance, branches, otherwise, view) {
@@ -179,6 +209,7 @@ impl ConnectionCollector {
         }
     }
 
+    /// Reads one `connect`. Both sides must be ports, different ones, and arrays of the same size.
     fn connect<'a>(
         &mut self,
         instance: &mut Instance<'a, '_>,
@@ -188,6 +219,7 @@ impl ConnectionCollector {
         span: Span,
     ) {
         let (x, y) = (end(instance, a, view), end(instance, b, view));
+        // An absent conditional component takes its connections away (MLS 4.4.5); errors have been reported.
         let (Some(Some(x)), Some(Some(y))) = (x, y) else { return };
         if !all_ports(instance, &x, a.span) || !all_ports(instance, &y, b.span) {
             return;
@@ -214,12 +246,14 @@ impl ConnectionCollector {
             let place = ConnectSite { span, scope: view.scope, a: a.span, b: b.span };
             self.join(instance, (m, x.outside), (n, y.outside), &place);
             for port in [m, n] {
+                // For `cardinality`, which counts the connections of a port.
                 *instance.connected.entry(port).or_default() += 1;
             }
             self.network.connections.push(Connection { a: m, b: n, span, scope: view.scope });
         }
     }
 
+    /// Joins two nodes. A connection of overconstrained components is put aside until the spanning trees are known.
     fn join(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &ConnectSite) {
         if instance.builder().is_overconstrained(a.0) && instance.builder().is_overconstrained(b.0) {
             self.forest.links.push(OverconstrainedLink { a: a.0, b: b.0, span: at.span, scope: at.scope });
@@ -228,6 +262,8 @@ impl ConnectionCollector {
         self.join_alike(instance, a, b, at);
     }
 
+    /// Joins two nodes of the same kind: variables, arrays element by element, or connectors and records member by
+    /// member.
     fn join_alike(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &ConnectSite) {
         match (instance.node(a.0).clone(), instance.node(b.0).clone()) {
             (InstanceNode::Var(x), InstanceNode::Var(y)) => self.join_variables(instance, (x, a.1), (y, b.1), at),
@@ -243,6 +279,7 @@ impl ConnectionCollector {
         }
     }
 
+    /// Joins two connectors or records, which must have members of the same names (MLS 9.3).
     fn join_objects(
         &mut self,
         instance: &mut Instance<'_, '_>,
@@ -258,6 +295,7 @@ impl ConnectionCollector {
         if !fits || !connectors {
             let (na, nb) = (instance.scope(a.0).name.clone(), instance.scope(b.0).name.clone());
             let (ca, cb) = (instance.library.full_name(ta.class), instance.library.full_name(tb.class));
+            // Two connectors that do not fit are of different domains; else one side is no connector at all.
             let code = if connectors { Code::DomainMismatch } else { Code::BadConnect };
             let names = |t: &crate::instance::template::Template<'_>| {
                 t.elements.iter().map(|e| format!("`{}`", e.name)).collect::<Vec<_>>().join(", ")
@@ -271,6 +309,7 @@ impl ConnectionCollector {
             return;
         }
         for (e, i) in ta.elements.iter().zip(0u32..) {
+            // Classes inside a connector take no part.
             if !matches!(e.kind, TemplateElementKind::Component(_)) {
                 continue;
             }
@@ -281,6 +320,8 @@ impl ConnectionCollector {
         }
     }
 
+    /// Joins two scalar variables. Both must be flows or none, and of one type and dimension. Parameters are compared
+    /// instead of joined.
     fn join_variables(&mut self, instance: &mut Instance<'_, '_>, a: (u32, bool), b: (u32, bool), at: &ConnectSite) {
         let (x, y) = (&instance.variables[a.0 as usize], &instance.variables[b.0 as usize]);
         if x.flow != y.flow || x.ty != y.ty {
@@ -311,6 +352,7 @@ impl ConnectionCollector {
             (_, true) => &mut self.streams,
             _ => &mut self.potentials,
         };
+        // Potentials of inside and outside connectors are equal alike; for flows and streams the side decides the sign.
         let side = |s: (u32, bool)| if flow || stream { s } else { (s.0, false) };
         let i = sets.key(side(a), at.span, at.scope);
         let j = sets.key(side(b), at.span, at.scope);
@@ -318,7 +360,8 @@ impl ConnectionCollector {
     }
 }
 
-/// Constants and parameters of joined connectors are of one kind and have one value (MLS 9.3).
+/// Checks that constants and parameters of joined connectors are of one variability and have one value (MLS 9.3).
+/// Values that are not known yet are not compared.
 fn same_parameters(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &ConnectSite) {
     let of = |i: u32| &instance.variables[i as usize];
     let (kinds, names) = ([a, b].map(|i| of(i).variability), [a, b].map(|i| of(i).name.clone()));
@@ -336,19 +379,25 @@ fn same_parameters(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Connect
     instance.diagnostics.push(d.help("give both ports the same value"));
 }
 
+/// The place of a `connect`, for messages.
 struct ConnectSite {
+    /// The whole equation.
     span: Span,
+    /// The instance in which it stands.
     scope: ScopeId,
+    /// Its first argument.
     a: Span,
+    /// Its second argument.
     b: Span,
 }
 
-/// Component instances, parents before children, in declaration order.
+/// The scopes of component instances, parents before children, in declaration order. The first one is the model.
 pub fn component_scopes(instance: &Instance<'_, '_>) -> Vec<ScopeId> {
     let all = (0u32..).zip(&instance.scopes).filter(|(_, s)| s.component);
     all.map(|(i, _)| ScopeId(i)).collect()
 }
 
+/// Whether a list of equations contains `connect` or a statement about the connection graph, at any depth.
 fn concerns_network(equations: &[Equation]) -> bool {
     equations.iter().any(|e| match &e.kind {
         EquationKind::Connect(..) => true,
@@ -363,6 +412,7 @@ fn concerns_network(equations: &[Equation]) -> bool {
     })
 }
 
+/// The branch of an `if` equation that holds. `None`, after a message, where a condition is not known.
 fn choose<'a>(
     instance: &mut Instance<'a, '_>,
     branches: &'a [(Expr, Vec<Equation>)],
@@ -377,7 +427,7 @@ fn choose<'a>(
     Some(otherwise)
 }
 
-/// The ports a side of `connect` names: `None` after a message, `Some(None)` if a conditional component is absent.
+/// The ports that a side of `connect` names. `None` after a message, `Some(None)` if a conditional component is absent.
 fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: LookupContext) -> Option<Option<ConnectionEnd>> {
     let ExprKind::Reference(r) = &e.kind else {
         instance.diagnostics.push(
@@ -388,7 +438,7 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: LookupContext) ->
         return None;
     };
     let Some(LookupResult::Component(scope, index)) = instance.names().lookup(view, r.parts[0].name.name) else {
-        // The general evaluation knows how to say what is wrong.
+        // The general evaluation reports what is wrong with the name.
         instance.evaluator().eval(e, view);
         if !instance.diagnostics.iter().any(Diagnostic::is_error) {
             instance
@@ -402,7 +452,7 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: LookupContext) ->
     Some(Some(ConnectionEnd { selection, outside }))
 }
 
-/// Says so if an end is no port.
+/// Whether all nodes of an end are ports. Reports the first that is none.
 fn all_ports(instance: &mut Instance<'_, '_>, end: &ConnectionEnd, span: Span) -> bool {
     let Some(&node) = end.selection.nodes.iter().find(|&&n| !is_port(instance, n)) else { return true };
     let name = instance.node_name(node);
@@ -426,7 +476,7 @@ fn all_ports(instance: &mut Instance<'_, '_>, end: &ConnectionEnd, span: Span) -
     false
 }
 
-/// The ports of a component, in backticks.
+/// The public ports of a component, in backticks.
 fn port_names(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<String> {
     let template = instance.scope(scope).template.clone();
     let mut names = Vec::new();
@@ -441,6 +491,8 @@ fn port_names(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<String> {
     names
 }
 
+/// Whether a node may stand in a `connect`: a connector or record, an array of such, or a variable that is part of one,
+/// an input or output, or of a connector type.
 fn is_port(instance: &mut Instance<'_, '_>, node: NodeId) -> bool {
     match instance.node(node).clone() {
         InstanceNode::Object(s) => {
@@ -458,7 +510,8 @@ fn is_port(instance: &mut Instance<'_, '_>, node: NodeId) -> bool {
     }
 }
 
-/// Whether a variable's type is a `connector` such as `connector Signal = Real`.
+/// Whether the type of a variable is a connector such as `connector Signal = Real`. `name` is its full name, `scope`
+/// the component that declares it.
 fn declared_as_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, name: &str) -> bool {
     let last = name.rsplit('.').next().unwrap_or(name);
     let last = Symbol::new(last.split('[').next().unwrap_or(last));
@@ -476,7 +529,8 @@ fn declared_as_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, name: 
     }
 }
 
-/// Whether an element is itself a connector, so that it is seen from inside its component.
+/// Whether an element of a component is a connector itself, so that connections in the component see it from inside: it
+/// is an outside connector there. Elements of other scopes are not.
 fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, view: LookupContext) -> bool {
     if scope != view.scope {
         return false;
@@ -484,6 +538,7 @@ fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, vie
     let template = instance.scope(scope).template.clone();
     let element = &template.elements[index as usize];
     let TemplateElementKind::Component(c) = element.kind else { return false };
+    // An `outer` element belongs to the component that declares the `inner` one.
     if c.prefixes.outer {
         return false;
     }
@@ -496,6 +551,7 @@ fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, vie
     }
 }
 
+/// Reports two nodes of different kinds.
 fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &ConnectSite) {
     let (x, y) = (instance.node_name(a), instance.node_name(b));
     instance.diagnostics.push(
@@ -506,6 +562,7 @@ fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &ConnectS
     );
 }
 
+/// What a node is, for messages.
 fn what_it_is(instance: &Instance<'_, '_>, node: NodeId) -> String {
     match instance.node(node) {
         InstanceNode::Var(i) => match instance.variables[*i as usize].causality {
@@ -520,7 +577,8 @@ fn what_it_is(instance: &Instance<'_, '_>, node: NodeId) -> String {
     }
 }
 
-/// Ports whose variables have units of different dimension belong to different domains.
+/// Whether the units of two variables have different dimensions; ports with such variables belong to different domains.
+/// Reports it. Missing and unreadable units fit anywhere.
 fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &ConnectSite) -> bool {
     if instance.variables[a as usize].ty != ScalarType::Real {
         return false;
@@ -551,7 +609,8 @@ fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Connect
     true
 }
 
-/// Whether a `break` of who extends the class takes the connection away: by itself, or with one of its components.
+/// Whether a `break` modifier of the class that extends this one takes the connection away: by itself, or with one of
+/// its components (MLS 7.4).
 fn is_broken(base: &BaseClass<'_>, a: &Expr, b: &Expr) -> bool {
     let names = |e: &Expr| match &e.kind {
         ExprKind::Reference(r) => r.parts.first().is_some_and(|p| base.broken_components.contains(&p.name.name)),

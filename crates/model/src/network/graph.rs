@@ -1,31 +1,33 @@
 //! The network as a graph of components, for pictures and for the diagnosis.
+//!
+//! Only connections of the model's top level are in it; what components contain is not shown.
 
 use super::Network;
 use crate::instance::{Instance, InstanceNode, NodeId, ScopeId};
 use petgraph::graph::{NodeIndex, UnGraph};
 use std::collections::BTreeMap;
 
-/// A component of the model's top level.
+/// A node of the graph: a component of the model's top level, or a port of the model itself.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComponentBox {
     /// Its name.
     pub name: String,
-    /// Its class.
+    /// The full name of its class; empty for a port of the model itself.
     pub class: String,
     /// The classes that it extends, nearest first.
     pub bases: Vec<String>,
-    /// Names of its ports.
+    /// The names of its connected ports, in the order of the connections.
     pub ports: Vec<String>,
 }
 
-/// A connection between two components of the top level.
+/// An edge of the graph: a connection between two components of the top level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ComponentEdge {
     /// The port of the first, relative to its component (empty for a port of the model itself).
     pub from: String,
     /// The port of the second.
     pub to: String,
-    /// Full class name of the connector, which stands for the domain.
+    /// Full class name of the connector, which shows the domain; `signal` for single variables.
     pub connector: String,
 }
 
@@ -33,7 +35,8 @@ pub struct ComponentEdge {
 pub type ComponentGraph = UnGraph<ComponentBox, ComponentEdge>;
 
 impl Network {
-    /// The graph of the model's top level.
+    /// The graph of the model's top level. Nodes and edges come in the order of the connections; components without a
+    /// connection are not in it.
     pub fn graph(&self, instance: &Instance<'_, '_>) -> ComponentGraph {
         let mut graph = ComponentGraph::default();
         let mut known: BTreeMap<String, NodeIndex> = BTreeMap::new();
@@ -51,10 +54,12 @@ impl Network {
     }
 }
 
+/// A name as its component and the rest, which is empty for a port of the model itself.
 fn split(name: &str) -> (&str, &str) {
     name.split_once('.').unwrap_or((name, ""))
 }
 
+/// The node of a component, with `port` among its ports. Adds the node if it is new.
 fn node_of(
     graph: &mut ComponentGraph,
     known: &mut BTreeMap<String, NodeIndex>,
@@ -74,7 +79,7 @@ fn node_of(
     index
 }
 
-/// The class of each component of the top level and those that it extends, by the component's name.
+/// By name of each component of the top level: its class, then those that it extends.
 fn component_classes<'i>(instance: &'i Instance<'_, '_>) -> BTreeMap<&'i str, Vec<String>> {
     let top = instance.scopes.iter().filter(|s| s.component && !s.name.contains('.'));
     let names = |s: &crate::instance::Scope<'_>| {
@@ -83,6 +88,7 @@ fn component_classes<'i>(instance: &'i Instance<'_, '_>) -> BTreeMap<&'i str, Ve
     top.map(|s| (s.name.as_str(), names(s))).collect()
 }
 
+/// The class of a port, or `signal` for a variable.
 fn connector_class(instance: &Instance<'_, '_>, node: NodeId) -> String {
     match instance.node(node) {
         InstanceNode::Object(ScopeId(i)) => instance.library.full_name(instance.scopes[*i as usize].template.class),

@@ -1,6 +1,10 @@
-//! The connection graph of overconstrained connectors (MLS 9.4.2): its nodes are the overconstrained components, its edges
-//! `Connections.branch` and `connect`. A connection that would close a loop in it, or join two roots, says by the function
-//! `equalityConstraint` that both sides are equal, for as many equations as components would be too many.
+//! The connection graph of overconstrained connectors (MLS 9.4.2).
+//!
+//! Its nodes are the overconstrained components, its edges `Connections.branch` (required) and `connect` (optional).
+//! Enters: the statements of all components, one by one. Leaves: spanning trees with their roots. A connection that
+//! would close a loop in the graph, or join two roots, is broken: it states by the function `equalityConstraint` that
+//! both sides are equal, because as many equations as the type has components would be too many. `connect` calls
+//! [`VirtualConnectionGraph::add`] and `span`.
 
 use crate::instance::{Instance, LookupContext, NodeId, ScopeId};
 use bramah_syntax::ast::{ComponentReference, Expr};
@@ -22,43 +26,50 @@ pub struct OverconstrainedLink {
     pub scope: ScopeId,
 }
 
-/// Roots that a model offers.
+/// A node that may become a root: `Connections.potentialRoot(node, priority)`.
 #[derive(Clone, Copy, Debug)]
 struct PotentialRoot {
+    /// The node.
     node: usize,
-    /// Smaller is preferred.
+    /// Its priority; smaller is preferred. 0 if none is given.
     priority: f64,
 }
 
-/// The graph as the equations of a model state it.
+/// The graph as the equations of a model state it. Nodes go by numbers.
 #[derive(Default)]
 pub(super) struct VirtualConnectionGraph {
+    /// By number: the node.
     nodes: Vec<NodeId>,
+    /// By node: its number.
     number: FxHashMap<NodeId, usize>,
+    /// Edges that are never broken.
     branches: Vec<(usize, usize)>,
+    /// Nodes stated to be roots, with their places.
     roots: Vec<(usize, Span)>,
+    /// Nodes that may become roots.
     offers: Vec<PotentialRoot>,
-    /// Components joined by `connect`.
+    /// Connections, in order; these may be broken.
     pub links: Vec<OverconstrainedLink>,
 }
 
-/// What came of it.
+/// The spanning trees of the graph, one for each connected part with its root.
 pub(super) struct SpanningForest {
-    /// For each link whether it is part of the spanning tree.
+    /// For each link whether it is part of a spanning tree. The others are broken.
     pub kept: Vec<bool>,
-    /// The chosen roots.
+    /// The root of each tree.
     pub roots: FxHashSet<NodeId>,
-    /// First sides of branches that lie nearer to the root.
+    /// First sides of branches that are nearer to the root than the second side, for `Connections.rooted`.
     pub rooted: FxHashSet<NodeId>,
 }
 
-/// Whether a call is a statement about the connection graph.
+/// Whether a call is a statement about the connection graph: `Connections.branch`, `root` or `potentialRoot`.
 pub fn is_graph_statement(function: &ComponentReference) -> bool {
     let [package, what] = function.parts.as_slice() else { return false };
     package.name.name == "Connections" && matches!(what.name.name.as_str(), "branch" | "root" | "potentialRoot")
 }
 
 impl VirtualConnectionGraph {
+    /// The number of a node. A new node gets the next number.
     fn number(&mut self, node: NodeId) -> usize {
         let next = self.nodes.len();
         let number = *self.number.entry(node).or_insert(next);
@@ -68,7 +79,7 @@ impl VirtualConnectionGraph {
         number
     }
 
-    /// Takes `Connections.branch`, `root` or `potentialRoot`.
+    /// Reads `Connections.branch`, `root` or `potentialRoot`. Reports calls with the wrong number of arguments.
     pub(super) fn add<'a>(
         &mut self,
         instance: &mut Instance<'a, '_>,
@@ -95,6 +106,7 @@ impl VirtualConnectionGraph {
             ("branch", &[a, b]) => self.branches.push((a, b)),
             ("root", &[a]) => self.roots.push((a, span)),
             (_, &[node]) => {
+                // The priority must be a constant; `None` after a message drops the offer.
                 let priority = match args.get(1) {
                     None => Some(0.0),
                     Some(e) => instance.evaluator().constant(e, view).and_then(|v| v.as_number(&instance.exprs)),
@@ -105,7 +117,10 @@ impl VirtualConnectionGraph {
         }
     }
 
-    /// Chooses the spanning trees and their roots.
+    /// Chooses the spanning trees and their roots. Returns the links with the decision about each.
+    ///
+    /// The order gives the weights of MLS 9.4.2: branches first, then roots, then connections in their order as far as
+    /// they join two trees without roots colliding, then potential roots by priority.
     pub(super) fn span(mut self, instance: &mut Instance<'_, '_>) -> (Vec<OverconstrainedLink>, SpanningForest) {
         let links = std::mem::take(&mut self.links);
         let ends: Vec<(usize, usize)> = links.iter().map(|l| (self.number(l.a), self.number(l.b))).collect();
@@ -123,6 +138,7 @@ impl VirtualConnectionGraph {
             }
         }
         let kept: Vec<bool> = ends.iter().map(|&(a, b)| trees.link(a, b)).collect();
+        // Stable: of equal priorities the one stated first becomes the root.
         self.offers.sort_by(|a, b| a.priority.total_cmp(&b.priority));
         for offer in &self.offers {
             let tree = trees.of(offer.node);
@@ -133,6 +149,7 @@ impl VirtualConnectionGraph {
         for node in 0..self.nodes.len() {
             let tree = trees.of(node);
             if trees.root[tree].is_none() {
+                // After the message any node serves as the root, so that the rest of the model can be checked.
                 self.no_root(instance, node, &links, &ends);
                 trees.root[tree] = Some(node);
             }
@@ -145,6 +162,7 @@ impl VirtualConnectionGraph {
         (links, SpanningForest { kept, roots, rooted })
     }
 
+    /// Reports a tree in which nothing can be a root. `node` is one of its nodes.
     fn no_root(
         &self,
         instance: &mut Instance<'_, '_>,
@@ -164,34 +182,40 @@ impl VirtualConnectionGraph {
     }
 }
 
-/// Disjoint trees with their roots.
+/// Disjoint trees with their roots, as union-find.
 struct DisjointTrees {
+    /// The sets of nodes.
     sets: UnionFind<usize>,
-    /// The root of each tree, at the node that stands for it.
+    /// By the node that stands for a tree: the root of the tree, if it has one.
     root: Vec<Option<usize>>,
 }
 
 impl DisjointTrees {
+    /// Each node a tree of its own, without a root.
     fn new(count: usize) -> Self {
         DisjointTrees { sets: UnionFind::new(count), root: vec![None; count] }
     }
 
+    /// The node that stands for the tree of a node.
     fn of(&self, node: usize) -> usize {
         self.sets.find(node)
     }
 
+    /// Whether a node is the root of its tree.
     fn is_root(&self, node: usize) -> bool {
         self.root[self.of(node)] == Some(node)
     }
 
+    /// Joins two trees. The result keeps the root of the first, or else that of the second.
     fn join(&mut self, a: usize, b: usize) {
+        // Read before the union, which changes the node that stands for the tree.
         let root = self.root[self.of(a)].or(self.root[self.of(b)]);
         self.sets.union(a, b);
         let tree = self.of(a);
         self.root[tree] = root;
     }
 
-    /// Joins two trees unless they are one, or both have a root.
+    /// Joins two trees unless they are one already or both have a root. False if not joined.
     fn link(&mut self, a: usize, b: usize) -> bool {
         let (x, y) = (self.of(a), self.of(b));
         let apart = x != y && !(self.root[x].is_some() && self.root[y].is_some());
@@ -202,7 +226,7 @@ impl DisjointTrees {
     }
 }
 
-/// The distance of every node from its root.
+/// By node: its distance from its root, found breadth first. `usize::MAX` for nodes that no root reaches.
 fn depths(count: usize, edges: &[(usize, usize)], roots: &[usize]) -> Vec<usize> {
     let mut beside: Vec<Vec<usize>> = vec![Vec::new(); count];
     for &(a, b) in edges {
