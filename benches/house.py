@@ -70,7 +70,7 @@ def methods_of(texts):
 def arguments_of(text):
     """Names of functions with the numbers of their arguments, `self` included."""
     # what a standard or C calls has the arguments that these give it
-    text = re.sub(r'extern "C" fn \w+', "", text)
+    text = re.sub(r'extern "C" fn \w+', "", re.sub(r"//.*", "", text))
     for match in re.finditer(r"\bfn (\w+)(?:<[^(]*>)?\(", text):
         depth, start, count, i = 1, match.end(), 0, match.end()
         while depth and i < len(text):

@@ -170,7 +170,7 @@ pub fn main() -> ExitCode {
     match dispatch(cli.command, &mut messages) {
         Ok(CommandStatus::Fine) => ExitCode::SUCCESS,
         Ok(CommandStatus::Wrong) => ExitCode::from(1),
-        // Only failures are printed here. A subcommand prints the messages of a wrong model itself.
+        // With a status instead of a failure, the subcommand has printed its messages already.
         Err(failure) => {
             messages.say(&failure.diagnostics);
             ExitCode::from(failure.exit_code(&messages.sources))

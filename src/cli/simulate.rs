@@ -66,7 +66,7 @@ pub(super) fn run(args: &SimulateArgs, messages: &mut MessageReporter) -> Result
     let mut record = StatisticsRecord::default();
     // The record is filled while the run goes on, so it has useful content even when `execute` panics.
     let work = AssertUnwindSafe(|| execute(args, &experiment, &mut record, messages));
-    // A panic is caught to write the statistics first. It continues below and reaches the hook in `main`.
+    // A panic is caught so that the statistics are written. The hook has printed it already, and it continues below.
     let outcome = catch_unwind(work);
     record.peak_memory_bytes = peak_memory();
     let written = match &experiment.statistics {
@@ -104,7 +104,7 @@ fn execute(
         ));
     }
     let target = ResultTarget::new(&output_name(experiment, &dae.class))?;
-    // Only the chosen columns are computed at each row, so the choice must precede the run.
+    // The solver hands only these columns to the sink, so the choice must precede the run.
     settings.wanted = columns::choose(dae, &experiment.variables, &target)?;
     let signals = signals(dae, &settings.wanted);
     let intervals = (settings.stop_time - settings.start_time) / settings.interval;
@@ -226,7 +226,7 @@ impl RecorderSink {
             let recorder = ResultRecorder::new(target.clone(), signals, units, plot)?;
             return Ok((RecorderSink { recorder, kept: None }, None));
         };
-        // A continued run has only the rows after the checkpoint in memory, so the picture would be incomplete.
+        // A continued run would have only the rows after the checkpoint in memory, and the picture would be incomplete.
         if plot {
             let diagnostic = Diagnostic::new(Code::BadArgument, "a run with checkpoints cannot be drawn at once");
             return Err(diagnostic.help("draw its result with `bramah plot` afterwards").into());

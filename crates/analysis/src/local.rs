@@ -15,6 +15,7 @@ use bramah_solve::ConsistentPoint;
 use bramah_syntax::diag::Diagnostic;
 pub use derivatives::Linearization;
 use nalgebra::{DMatrix, DVector};
+use newton::NewtonPoint;
 pub use plan::EvaluationPlan;
 use std::sync::Arc;
 
@@ -177,7 +178,8 @@ impl LocalEvaluator {
             y[place.column] = if place.negated { -value } else { value };
         }
         // `settle` also handles events, which discrete variables need, and it solves where Newton's method does not.
-        if plan.discrete || !plan.newton(time, y, yp, residual, entries, torn_entries, &mut point.values)? {
+        let mut at = NewtonPoint { y, yp, residual, entries, torn_entries, values: &mut point.values };
+        if plan.discrete || !plan.newton(time, &mut at)? {
             for (j, c) in system.columns.iter().enumerate().filter(|(_, c)| c.is_state()) {
                 point.values[system.layout.var(c.variable)] = y[j];
             }

@@ -1,7 +1,11 @@
-//! `bramah lsp`: the language server, over stdin and stdout.
+//! `bramah lsp`: the language server, which speaks the Language Server Protocol over stdin and stdout.
 //!
-//! One thread answers requests from the texts at hand; another compiles the models of a file after each change, and gives up
-//! a file for a newer one.
+//! Requests and notifications of an editor enter; answers and diagnostics leave. `answers` answers requests, `files`
+//! holds the open texts, `checker` compiles in the background. The logic about Modelica is in the crate
+//! `bramah_editor`.
+//!
+//! Two threads: the main one answers requests from the open texts, so that typing stays fast. The other compiles the
+//! models of a file after each change and gives up when a newer text arrives.
 
 mod answers;
 mod checker;
@@ -40,9 +44,11 @@ pub(super) struct LspArgs {
     stdio: bool,
 }
 
+/// Serves one editor until it disconnects or asks to exit. `Err`: the connection broke, or a library folder is missing.
 pub(super) fn run(args: &LspArgs) -> Result<CommandStatus, CommandFailure> {
     let (connection, threads) = Connection::stdio();
     let served = serve(&connection, folders(&args.library)?);
+    // The threads of the connection end only when its channels are closed, so this must precede `join`.
     drop(connection);
     let joined = threads.join();
     let broken =
@@ -52,16 +58,22 @@ pub(super) fn run(args: &LspArgs) -> Result<CommandStatus, CommandFailure> {
     Ok(ending)
 }
 
-/// What the server knows.
+/// The state of the server on its main thread.
 struct LanguageServer<'c> {
+    /// Channels to and from the editor.
     connection: &'c Connection,
+    /// The open texts, and the answers from them.
     answers: LspWorkspace,
+    /// The thread that compiles.
     checker: BackgroundChecker,
-    /// What was said of each file that was checked.
+    /// Diagnostics by the file that was checked. They may concern other files too.
     said: std::collections::BTreeMap<PathBuf, Vec<messages::FileDiagnostic>>,
 }
 
-/// The protocol wants 1 from a server that is ended without having been shut down.
+/// Performs the handshake and serves.
+///
+/// Returns `Wrong` (exit code 1) when the editor sends `exit` without `shutdown`, as the protocol demands. `Err`: the
+/// handshake or the connection failed.
 fn serve(connection: &Connection, libraries: Vec<PathBuf>) -> Result<CommandStatus, String> {
     let (id, params) = connection.initialize_start().map_err(|e| e.to_string())?;
     let answers = LspWorkspace::new(&params, libraries);
@@ -76,12 +88,15 @@ fn serve(connection: &Connection, libraries: Vec<PathBuf>) -> Result<CommandStat
 }
 
 impl LanguageServer<'_> {
+    /// The main loop: takes messages of the editor and results of the checker, whichever comes first.
     fn listen(&mut self) -> Result<CommandStatus, String> {
+        // A clone of the receiver, since `self` is borrowed mutably in the branches.
         let results = self.checker.results.clone();
         loop {
             select! {
                 recv(self.connection.receiver) -> message => match message {
                     Ok(Message::Request(request)) => {
+                        // Answers `shutdown` and waits for the `exit` after it.
                         if self.connection.handle_shutdown(&request).map_err(|e| e.to_string())? {
                             return Ok(CommandStatus::Fine);
                         }
@@ -90,8 +105,9 @@ impl LanguageServer<'_> {
                     }
                     Ok(Message::Notification(n)) if n.method == notification::Exit::METHOD => return Ok(CommandStatus::Wrong),
                     Ok(Message::Notification(notification)) => self.notice(&notification),
+                    // The server sends no requests, so a response has no meaning.
                     Ok(Message::Response(_)) => {}
-                    // the editor has gone
+                    // The editor has closed the connection without `exit`.
                     Err(_) => return Ok(CommandStatus::Fine),
                 },
                 recv(results) -> checked => if let Ok(checked) = checked {
@@ -101,7 +117,7 @@ impl LanguageServer<'_> {
         }
     }
 
-    /// A request that fails must not end the server.
+    /// Answers one request. Errors and panics become error responses, so that they do not end the server.
     fn answer(&mut self, request: Request) -> Response {
         let id = request.id.clone();
         let said = &self.said;
@@ -117,6 +133,7 @@ impl LanguageServer<'_> {
         }
     }
 
+    /// Handles a notification: texts opened, changed, closed or saved. Others are ignored.
     fn notice(&mut self, notification: &Notification) {
         match notification.method.as_str() {
             notification::DidOpenTextDocument::METHOD => {
@@ -129,6 +146,7 @@ impl LanguageServer<'_> {
                 let Some(p) = read::<lsp_types::DidChangeTextDocumentParams>(notification) else { return };
                 let Some(path) = self.answers.cache.path(&p.text_document.uri) else { return };
                 let mut text = self.answers.open.get(&path).unwrap_or_default().to_owned();
+                // Each change refers to the text after the changes before it, so their order matters.
                 p.content_changes.iter().for_each(|change| apply(&mut text, change));
                 self.changed(path, &text);
             }
@@ -136,11 +154,12 @@ impl LanguageServer<'_> {
                 let Some(p) = read::<lsp_types::DidCloseTextDocumentParams>(notification) else { return };
                 if let Some(path) = self.answers.cache.path(&p.text_document.uri) {
                     self.answers.open.close(&path);
+                    // Diagnostics of a closed file are withdrawn.
                     self.say(&path, Vec::new());
                 }
             }
             notification::DidSaveTextDocument::METHOD => {
-                // others may use what has changed
+                // Other open files may use classes of the saved one.
                 let all: Vec<PathBuf> = self.answers.open.paths().cloned().collect();
                 all.iter().for_each(|path| self.check(path));
             }
@@ -148,13 +167,15 @@ impl LanguageServer<'_> {
         }
     }
 
+    /// Stores a new text of a file and checks it.
     fn changed(&mut self, path: PathBuf, text: &str) {
         self.answers.open.set(path.clone(), text);
         self.check(&path);
     }
 
-    /// What the parser says at once, the rest when it is there.
+    /// Publishes syntax errors at once; without any, asks the checker to compile the file.
     fn check(&mut self, path: &Path) {
+        // The user cannot change files that ship, so they are not checked.
         if bramah_editor::is_shipped(path) {
             return;
         }
@@ -162,20 +183,27 @@ impl LanguageServer<'_> {
         if found.is_empty() {
             self.checker.ask(path.to_path_buf(), self.answers.open.clone());
         } else {
+            // A pending result belongs to an older text and would overwrite the syntax errors.
             self.checker.forget(path);
             self.say(path, found);
         }
     }
 
+    /// Takes a result of the checker.
     fn learn(&mut self, checked: CheckResult) {
+        // Values of parameters are useful even when the text has changed since.
         self.answers.facts = checked.facts;
+        // Places of messages are valid only for the text that was compiled.
         let current = checked.open.get(&checked.path) == self.answers.open.get(&checked.path);
         if current {
             self.say(&checked.path, checked.messages);
         }
     }
 
-    /// Publishes what is said of a file now, in every file that is or was concerned.
+    /// Stores the diagnostics of a checked file, and publishes those of every file that has or had some.
+    ///
+    /// The protocol replaces all diagnostics of a file at once. So for each concerned file those of all checks are
+    /// collected.
     fn say(&mut self, of: &Path, found: Vec<messages::FileDiagnostic>) {
         let before = self.said.insert(of.to_path_buf(), found).unwrap_or_default();
         let now = self.said.get(of).into_iter().flatten();
@@ -186,6 +214,7 @@ impl LanguageServer<'_> {
         for path in concerned {
             let Some(uri) = self.answers.cache.uri(&path) else { continue };
             let mut diagnostics: Vec<lsp_types::Diagnostic> = Vec::new();
+            // Two files that use the same broken class report the same error.
             for message in self.said.values().flatten().filter(|m| m.path == path) {
                 if !diagnostics.contains(&message.diagnostic) {
                     diagnostics.push(message.diagnostic.clone());
@@ -193,28 +222,31 @@ impl LanguageServer<'_> {
             }
             let params = lsp_types::PublishDiagnosticsParams { uri, diagnostics, version: None };
             let method = notification::PublishDiagnostics::METHOD.to_owned();
-            // an editor that has gone away is noticed at the next message from it
+            // A closed connection is noticed by the main loop.
             let _ = self.connection.sender.send(Notification::new(method, params).into());
         }
     }
 }
 
+/// The parameters of a notification; `None` when they do not fit, and the notification is ignored.
 fn read<P: DeserializeOwned>(notification: &Notification) -> Option<P> {
     serde_json::from_value(notification.params.clone()).ok()
 }
 
+/// Applies one change to a text: the complete new text, or the replacement of a range.
 fn apply(text: &mut String, change: &lsp_types::TextDocumentContentChangeEvent) {
     match change.range {
         None => text.clone_from(&change.text),
         Some(range) => {
             let start = lines::offset(text, range.start) as usize;
+            // A range that ends before its start would panic below.
             let end = (lines::offset(text, range.end) as usize).max(start);
             text.replace_range(start..end, &change.text);
         }
     }
 }
 
-/// The texts and what surrounds them, for one look.
+/// The open texts with the library folders, as the editor crate takes them.
 fn texts<'t>(open: &'t OpenTexts, libraries: &'t [PathBuf]) -> bramah_editor::EditorWorkspace<'t> {
     bramah_editor::EditorWorkspace { world: open, libraries }
 }

@@ -1,4 +1,7 @@
-//! Circuits: what they offer, and runs of them.
+//! Answers about circuits: what a circuit offers (parameters, inputs, variables, picture), and simulations as jobs.
+//!
+//! `serve` calls [`open`] for `/api/circuit` and [`run`] for `/api/run`. Values travel as text in the unit shown on the
+//! page.
 
 use serde::{Deserialize, Serialize};
 
@@ -19,52 +22,72 @@ use bramah_syntax::diag::render::full;
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 use bramah_syntax::world::DiskWorld;
 
-/// Digits of values that the page shows: as many as the reader of a data sheet needs, and the text is what is sent back.
+/// Significant digits of parameter values on the page. The shown text is also what the page sends back.
 const DIGITS: usize = 9;
 
+/// The JSON answer of `/api/circuit`.
 #[derive(Serialize)]
 struct CircuitDescription {
+    /// File or package in the folder; empty for a model that ships.
     source: String,
     class: String,
     description: String,
+    /// The network as SVG.
     picture: String,
+    /// Rendered warnings of the compilation.
     messages: String,
+    /// Start time of the run in seconds.
     start: f64,
+    /// Stop time of the run in seconds.
     stop: f64,
     parameters: Vec<ParameterDescription>,
     variables: Vec<VariableDescription>,
     inputs: Vec<VariableDescription>,
 }
 
+/// A variable as the page shows it.
 #[derive(Serialize)]
 struct VariableDescription {
+    /// Unit of the values in the model.
     name: String,
+    /// Unit in which the page shows values.
     unit: String,
     shown_unit: String,
     description: String,
 }
 
+/// A parameter that the page can change.
 #[derive(Serialize)]
 struct ParameterDescription {
     #[serde(flatten)]
     named: VariableDescription,
+    /// `real`, `integer`, `boolean` or `enumeration`.
     kind: &'static str,
+    /// Names of an enumeration's literals; empty for other kinds.
     literals: Vec<String>,
+    /// Value in the unit of the model.
     value: String,
+    /// Value in the shown unit.
     shown: String,
+    /// Lower limit in the shown unit; empty when there is none.
     min: String,
+    /// Upper limit in the shown unit; empty when there is none.
     max: String,
+    /// Changing it requires the model to be compiled again.
     structural: bool,
-    /// No other parameter decides it: a study without parameters takes it to be uncertain.
+    /// No other parameter decides its value. A study that lists no parameters treats these as uncertain.
     root: bool,
 }
 
-/// What a circuit offers; its network also where it is wrong.
+/// Compiles a circuit and describes it as JSON.
+///
+/// A circuit with errors gives status 422 with the messages, and its network when the components could be read.
 pub(super) fn open(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
     let request = folder.request(ask.value("source"), ask.value("class"))?;
     let simulation = match Simulation::compile(&DiskWorld, &request) {
         Ok(simulation) => simulation,
         Err(error) => {
+            // The picture needs no equations, so the user can see an unfinished circuit.
             let drawn = graph(&DiskWorld, &request).value.map(|(class, graph)| network::write(&graph, &class));
             let wrong = serde_json::json!({ "messages": error.full(), "picture": drawn.unwrap_or_default() });
             return Ok(HttpResponse::json(&wrong).with_status(422));
@@ -85,6 +108,7 @@ pub(super) fn open(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpRespo
     }))
 }
 
+/// Describes a variable for the page.
 fn named(signal: &Signal) -> VariableDescription {
     VariableDescription {
         name: signal.name.clone(),
@@ -94,13 +118,16 @@ fn named(signal: &Signal) -> VariableDescription {
     }
 }
 
+/// Describes a parameter for the page.
 fn offered(parameter: &Parameter) -> ParameterDescription {
     let signal = &parameter.signal;
     let shown = |value: f64| match &signal.kind {
         Kind::Boolean => (value != 0.0).to_string(),
+        // Literals are numbered from 1.
         Kind::Enumeration(literals) => literals.get(value as usize - 1).cloned().unwrap_or_default(),
         Kind::Real | Kind::Integer => number::rounded(shown_values(signal, &[value])[0], DIGITS),
     };
+    // Unlimited parameters have infinite limits, which the page shows as empty fields.
     let limit = |limit: Option<f64>| limit.filter(|l| l.is_finite()).map_or_else(String::new, shown);
     let (kind, literals) = match &signal.kind {
         Kind::Real => ("real", Vec::new()),
@@ -121,24 +148,32 @@ fn offered(parameter: &Parameter) -> ParameterDescription {
     }
 }
 
+/// The JSON body of `/api/run`.
 #[derive(Deserialize)]
 struct SimulationRequest {
+    // A missing field takes its default, so the page sends only what the user has set.
     #[serde(default)]
+    /// File or package in the folder; empty for a model that ships.
     source: String,
     class: String,
     #[serde(default)]
+    /// Values of parameters as text, by name.
     set: std::collections::BTreeMap<String, String>,
     #[serde(default)]
+    /// Stop time in seconds or with a unit; empty for that of the model.
     stop: String,
     #[serde(default)]
+    /// Patterns of variables to draw; empty for the usual choice.
     variables: Vec<String>,
     #[serde(default)]
+    /// `engineering` shows bar, l/min and the like; anything else the units of the model.
     units: String,
 }
 
-/// Runs a circuit with values of its parameters.
+/// Starts a job that simulates a circuit. `Err`: the request cannot be read, or the stop time is no time.
 pub(super) fn run(folder: &ServerFolder, ask: &HttpRequest, jobs: &ServerJobs) -> Result<HttpResponse, HttpRefusal> {
     let wanted: SimulationRequest = ask.json()?;
+    // Checked here rather than in the job, so that the page can mark the field.
     let stop = match wanted.stop.trim() {
         "" => None,
         text => Some(seconds(text).map_err(|why| HttpRefusal::new(422, why))?),
@@ -149,6 +184,7 @@ pub(super) fn run(folder: &ServerFolder, ask: &HttpRequest, jobs: &ServerJobs) -
     jobs.start(move |job| simulated(&request, &wanted, stop, job))
 }
 
+/// The job: compiles, runs and draws. `Err` is the text that the page shows.
 fn simulated(
     request: &Request,
     wanted: &SimulationRequest,
@@ -161,6 +197,7 @@ fn simulated(
     if let Some(stop) = stop {
         simulation.stop_time(stop);
     }
+    // Both checks precede the run, which may take long.
     let patterns = GlobPatterns::new(&wanted.variables);
     all_given(&simulation)?;
     record(&mut simulation, &patterns)?;
@@ -168,11 +205,13 @@ fn simulated(
         simulation.run_settings().start_time,
         simulation.run_settings().stop_time - simulation.run_settings().start_time,
     );
+    // Always true: the job is stopped by the flag, not by the callback.
     let mut progress = |now: &Progress| {
         job.at("simulating", Some((now.time - start) / length));
         true
     };
     let mut control = Control { interrupt: Some(job.stop()), progress: Some(&mut progress), ..Control::default() };
+    // The outcome is kept however the run ends, so that a failed run still shows its curves up to the failure.
     let mut outcome = simulation.run_kept(None, &mut control).map_err(|error| error.to_string())?;
     job.at("drawing", None);
     let messages = full(simulation.sources(), &outcome.diagnostics);
@@ -201,14 +240,16 @@ fn simulated(
     Ok(JobOutput { messages, page: html::write(&drawn.figure, &facts), files: Vec::new() })
 }
 
-/// Every input has a value of its own; the page has fields for them.
+/// Checks that every input has a constant value; the page has fields for them. `Err` names those without.
 fn all_given(simulation: &Simulation) -> Result<(), String> {
     let help = |_: &str| vec!["give it a constant value below \"Inputs\", or recorded ones in a study".to_owned()];
     let missing = missing_inputs(&simulation.model().dae, &[], help);
     if missing.is_empty() { Ok(()) } else { Err(full(simulation.sources(), &missing)) }
 }
 
-/// Records what matches the patterns; without any, what the simulation records by itself.
+/// Records the variables that match the patterns; without patterns the simulation's own choice.
+///
+/// `Err`: a pattern matches no variable.
 fn record(simulation: &mut Simulation, patterns: &GlobPatterns) -> Result<(), String> {
     if patterns.is_empty() {
         return Ok(());

@@ -1,4 +1,7 @@
-//! The folder that is served: what lies in it, and what ships with bramah.
+//! The folder that is served: lists its circuits, studies and recordings, and the models that ship with bramah.
+//!
+//! Names from requests enter; paths inside the folder, texts and compile requests leave. `serve` makes one
+//! [`ServerFolder`] and all worker threads share it.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -15,63 +18,83 @@ use bramah_syntax::diag::render::full;
 use bramah_syntax::diag::{Code, Sources};
 use bramah_syntax::world::{DiskWorld, World};
 
-/// Folders deeper than this are not searched.
+/// Depth of folders that are searched, the served one included.
 const DEPTH: usize = 5;
-/// No more files than this are listed.
+/// Number of files that are listed at most, so that a large folder does not block the page.
 const MOST: usize = 2000;
 
-/// The folder.
+/// The served folder.
 pub(super) struct ServerFolder {
+    /// Canonical path; `guard::inside` compares with it.
     root: PathBuf,
+    /// Models that ship with bramah, collected at the first request.
     shipped: OnceLock<Vec<CircuitListing>>,
 }
 
-/// What is in it.
+/// Everything that the page can open; the JSON answer of `/api/folder`.
+// Sent as it stands, so the names of the fields are those of the JSON.
 #[derive(Serialize)]
 pub(super) struct FolderContents<'a> {
+    /// Path of the folder, for display.
     folder: String,
+    /// Version of bramah.
     version: &'static str,
+    /// Runnable models in the folder.
     circuits: Vec<CircuitListing>,
+    /// Runnable models that ship with bramah.
     shipped: &'a [CircuitListing],
+    /// Relative paths of study files.
     studies: Vec<String>,
+    /// Relative paths of CSV files.
     recordings: Vec<String>,
+    /// Circuit files that cannot be read, with the reason.
     troubles: Vec<FileProblem>,
 }
 
+/// A model that can run.
 #[derive(Serialize)]
 struct CircuitListing {
+    /// File or package in the folder; empty for a model that ships.
     source: String,
+    /// Full name of the class.
     class: String,
+    /// Description of the class; may be empty.
     description: String,
 }
 
+/// A circuit file that cannot be read.
 #[derive(Serialize)]
 struct FileProblem {
+    /// Relative path of the file.
     source: String,
+    /// Rendered diagnostics.
     messages: String,
 }
 
 impl ServerFolder {
-    /// Paths in messages are relative to the folder, so the process works in it.
+    /// Opens a folder, or the folder of a file. It becomes the working directory of the process, so that paths in
+    /// messages are relative to it.
+    ///
+    /// `Err`: it does not exist or cannot be entered.
     pub fn new(path: &Path) -> Result<Self, CommandFailure> {
         let root = path.canonicalize().map_err(|e| files::access(path, "read", &e))?;
-        // of a file, its folder
+        // A file, such as a circuit, stands for the folder it is in.
         let root = if root.is_file() { root.parent().unwrap_or(&root).to_owned() } else { root };
         std::env::set_current_dir(&root).map_err(|e| files::access(path, "opened", &e))?;
         Ok(ServerFolder { root, shipped: OnceLock::new() })
     }
 
-    /// Its path.
+    /// The canonical path of the folder.
     pub fn root(&self) -> &Path {
         &self.root
     }
 
-    /// A path in it, from a name relative to it.
+    /// The path for a name relative to the folder. `Err` (403): it leads out of the folder.
     pub fn inside(&self, name: &str) -> Result<PathBuf, HttpRefusal> {
         guard::inside(&self.root, name)
     }
 
-    /// The text of a file in it.
+    /// The text of a file in the folder; bytes that are not UTF-8 are replaced. `Err`: 403 outside, 404 not readable.
     pub fn text(&self, name: &str) -> Result<String, HttpRefusal> {
         let path = self.inside(name)?;
         let bytes = std::fs::read(path);
@@ -79,17 +102,21 @@ impl ServerFolder {
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
-    /// What to compile for a circuit that the page names: a file or package in the folder, or a class that ships.
+    /// The compile request for a circuit that the page names.
+    ///
+    /// `named` is a file or package in the folder; when it is empty, `class` is a model that ships. An empty `class`
+    /// means the class that can run. `Err` (403): the file is outside the folder.
     pub fn request(&self, named: &str, class: &str) -> Result<Request, HttpRefusal> {
         let model = (!class.is_empty()).then(|| class.to_owned());
         if named.is_empty() {
             return Ok(Request { source: class.into(), ..Request::default() });
         }
+        // Only checked. The request keeps the relative path, which appears in messages.
         self.inside(named)?;
         Ok(Request { source: source(Path::new(named)), model, ..Request::default() })
     }
 
-    /// Everything that the page can open.
+    /// Lists everything that the page can open. Each circuit file is parsed to find its runnable models.
     pub fn contents(&self) -> FolderContents<'_> {
         let mut found = FolderFiles::default();
         found.walk(Path::new(""), DEPTH);
@@ -102,6 +129,7 @@ impl ServerFolder {
                     class: r.class,
                     description: r.description,
                 })),
+                // One broken file must not hide the others.
                 Err(why) => troubles.push(FileProblem { source: file, messages: full(&Sources::default(), &why) }),
             }
         }
@@ -117,10 +145,12 @@ impl ServerFolder {
     }
 }
 
-/// Models that ship with bramah to be run: those of `models`, and the examples of the library.
+/// Models that ship with bramah and have an `experiment` annotation: those of `models` first, then the library's
+/// examples.
 fn shipped() -> Vec<CircuitListing> {
     let mut all = Vec::new();
     let mut roots = ShippedWorld::roots();
+    // The sort is stable, so each group keeps its order.
     roots.sort_by_key(|root| !root.starts_with("models"));
     for root in roots {
         for (name, _) in ShippedWorld.list(&root).unwrap_or_default() {
@@ -136,17 +166,22 @@ fn shipped() -> Vec<CircuitListing> {
     all.into_iter().map(listed).collect()
 }
 
-/// Files by what they are for.
+/// Files found in the folder, by purpose; relative paths.
 #[derive(Default)]
+/// Circuit files and packages.
 struct FolderFiles {
     circuits: Vec<String>,
+    /// Study files.
     studies: Vec<String>,
+    /// CSV files.
     recordings: Vec<String>,
 }
 
 impl FolderFiles {
-    /// A folder with a `package.mo` is one circuit file with all in it; of studies and experiments, those that say
-    /// `version` are studies.
+    /// Adds the files below `folder`, down to `depth` levels of folders.
+    ///
+    /// A folder with a `package.mo` is one circuit, named by the folder. Its own `.mo` files and sub-packages are part
+    /// of it.
     fn walk(&mut self, folder: &Path, depth: usize) {
         if depth == 0 {
             return;
@@ -157,6 +192,7 @@ impl FolderFiles {
         if package {
             self.circuits.push(here.display().to_string());
         }
+        // Counted here as well as on entry, because the limit is on the total.
         for (name, is_folder) in entries {
             if self.circuits.len() + self.studies.len() + self.recordings.len() >= MOST {
                 return;
@@ -164,8 +200,11 @@ impl FolderFiles {
             let path = folder.join(&name);
             let shown = path.display().to_string();
             match path.extension().and_then(|e| e.to_str()) {
+                // Hidden folders and build output hold no files of the user.
                 _ if name.starts_with('.') || is_folder && name == "target" => {}
                 _ if is_folder => {
+                    // A sub-package belongs to the package above, which lists its models. Other folders in a package
+                    // may hold studies.
                     let inner = package && path.join("package.mo").exists();
                     self.walk(&path, if inner { 0 } else { depth - 1 });
                 }
@@ -178,12 +217,14 @@ impl FolderFiles {
     }
 }
 
+/// Whether a TOML file is a study and not an experiment. The text is searched, so that a study with errors is listed
+/// too.
 fn is_study(path: &Path) -> bool {
     let text = DiskWorld.read(path).unwrap_or_default();
     text.contains("[[recordings]]") || text.lines().any(|line| line.trim_start().starts_with("[signals"))
 }
 
-/// Says that a name cannot be used.
+/// The failure for a file name in a request that cannot be used.
 pub(super) fn unusable(name: &str, why: &str) -> CommandFailure {
     CommandFailure::new(Code::FileAccess, format!("`{name}` {why}"))
 }

@@ -1,4 +1,7 @@
-//! Who may ask, how much, and for which files.
+//! The security checks of the server: which requests are answered, how large they may be, and which files they reach.
+//!
+//! The server runs with the user's rights, and any site in the user's browser can send requests to 127.0.0.1. These
+//! checks keep other sites out and paths inside the served folder.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -6,11 +9,14 @@ use tiny_http::{Method, Request};
 
 use super::http::HttpRefusal;
 
-/// The largest upload, in bytes.
+/// The largest body of a request in bytes (200 MiB).
 pub(super) const LARGEST: u64 = 200 << 20;
 
-/// Lets in requests of the page itself. A browser names the host it meant: a name that leads to this machine by a trick
-/// of its DNS server is not ours. It also names the site a request comes from.
+/// Accepts requests of the server's own page and refuses others with 403, or 413 for a too large body.
+///
+/// The `Host` header must name this machine and port. This stops DNS rebinding, where a foreign name resolves to
+/// 127.0.0.1. `Origin` and `Sec-Fetch-Site` name the site that sent the request; browsers do not let scripts change
+/// them.
 pub(super) fn allowed(request: &Request, port: u16) -> Result<(), HttpRefusal> {
     let header = |name: &str| {
         let found = request.headers().iter().find(|h| h.field.as_str().as_str().eq_ignore_ascii_case(name));
@@ -22,30 +28,37 @@ pub(super) fn allowed(request: &Request, port: u16) -> Result<(), HttpRefusal> {
     }
     let origin = header("Origin");
     let ours = |origin: &str| origin.strip_prefix("http://").is_some_and(|o| hosts.iter().any(|h| h == o));
+    // `none` means that the user typed the address. Programs other than browsers send no such header.
     let elsewhere = header("Sec-Fetch-Site").is_some_and(|site| site != "same-origin" && site != "none");
+    // A plain link to the page from elsewhere is a GET and harmless; it must not start or write anything.
     if origin.is_some_and(|o| !ours(o)) || elsewhere && *request.method() != Method::Get {
         return Err(HttpRefusal::new(403, "this server answers its own page only"));
     }
+    // Known already from the header. A body without a stated length is limited while it is read.
     if request.body_length().is_some_and(|length| length as u64 > LARGEST) {
         return Err(too_large());
     }
     Ok(())
 }
 
-/// Says how large an upload may be.
+/// The refusal (413) of a body that is too large.
 pub(super) fn too_large() -> HttpRefusal {
     HttpRefusal::new(413, format!("the file is larger than {} MB", LARGEST >> 20))
 }
 
-/// A path below the folder, for a name relative to it. Links that lead out of the folder do not count.
+/// The path in the served folder for a relative name. `Err` (403): it leads out of the folder.
+///
+/// `root` must be canonical. The file itself need not exist.
 pub(super) fn inside(root: &Path, name: &str) -> Result<PathBuf, HttpRefusal> {
     let refused = || HttpRefusal::new(403, format!("`{name}` is not in the folder that is served"));
+    // No `..`, no absolute path, no drive. A backslash separates folders on Windows.
     let plain = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
     if !Path::new(name).components().all(plain) || name.contains('\\') {
         return Err(refused());
     }
     let path = root.join(name);
-    // Of a file that is not there yet, the folder it will lie in counts.
+    // Links are resolved, as one may lead out of the folder. A new file does not exist yet, so its nearest existing
+    // folder is checked instead.
     let there = path.ancestors().find_map(|p| p.canonicalize().ok()).ok_or_else(refused)?;
     if there.starts_with(root) { Ok(path) } else { Err(refused()) }
 }

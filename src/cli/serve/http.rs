@@ -1,4 +1,7 @@
-//! Requests and answers as the rest of the server sees them.
+//! HTTP requests and answers in the form that the rest of the server uses.
+//!
+//! [`answer`] turns a `tiny_http` request into an [`HttpRequest`], lets `guard` check it, calls the handler and sends
+//! the [`HttpResponse`] or [`HttpRefusal`] with security headers. The worker threads of `serve` call it.
 
 use std::collections::BTreeMap;
 use std::io::Read;
@@ -12,103 +15,112 @@ use super::guard;
 use bramah_syntax::diag::render::full;
 use bramah_syntax::diag::{Diagnostic, Sources};
 
-/// What the page itself may load.
+/// Content security policy of the page: it loads only its own files, inline styles, data images and job pages in
+/// frames.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data:; \
                       frame-src 'self' blob:; frame-ancestors 'self'; form-action 'none'; base-uri 'none'";
-/// What the page of a job may load: its own script and nothing else.
+/// Content security policy of the page that a job made: inline scripts and styles only, no network, in a sandbox.
+///
+/// Names and texts of models reach this page, so it gets no access to the server.
 const ALONE: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; \
                      frame-ancestors 'self'; sandbox allow-scripts allow-downloads";
 
-/// A request.
+/// A request that has passed the guard, with its complete body.
 pub(super) struct HttpRequest {
-    /// It may change something.
+    /// The method is POST. The only other method is GET.
     pub post: bool,
-    /// Without query.
+    /// The path without the query.
     pub path: String,
+    /// Decoded values of the query by name.
     query: BTreeMap<String, String>,
+    /// The body, at most `guard::LARGEST` bytes.
     body: Vec<u8>,
 }
 
 impl HttpRequest {
-    /// A value of the query.
+    /// A value of the query; empty when it is missing.
     pub fn value(&self, name: &str) -> &str {
         self.query.get(name).map_or("", String::as_str)
     }
 
-    /// The body as JSON.
+    /// Parses the body as JSON. `Err` is a refusal with status 400.
     pub fn json<T: DeserializeOwned>(&self) -> Result<T, HttpRefusal> {
         let read = serde_json::from_slice(&self.body);
         read.map_err(|why| HttpRefusal::new(400, format!("the request cannot be read: {why}")))
     }
 
-    /// The body as text; letters of old encodings do no harm.
+    /// The body as text. Bytes that are not UTF-8 are replaced.
     pub fn text(&self) -> String {
         String::from_utf8_lossy(&self.body).into_owned()
     }
 }
 
-/// An answer.
+/// An answer of the server.
+/// HTTP status.
 pub(super) struct HttpResponse {
     status: u16,
+    /// Content type.
     kind: &'static str,
+    /// Content security policy.
     policy: &'static str,
     body: String,
 }
 
 impl HttpResponse {
+    /// An answer with status 200.
     fn new(kind: &'static str, policy: &'static str, body: impl Into<String>) -> Self {
         HttpResponse { status: 200, kind, policy, body: body.into() }
     }
 
-    /// The page.
+    /// The HTML page of the server itself.
     pub fn page(text: &str) -> Self {
         HttpResponse::new("text/html; charset=utf-8", POLICY, text)
     }
 
-    /// A page made by a job, with a script of its own.
+    /// A complete HTML page made by a job, which carries its own script and runs in a sandbox.
     pub fn report(text: String) -> Self {
         HttpResponse::new("text/html; charset=utf-8", ALONE, text)
     }
 
-    /// A style sheet.
+    /// A style sheet of the page.
     pub fn style(text: &str) -> Self {
         HttpResponse::new("text/css; charset=utf-8", POLICY, text)
     }
 
-    /// A script.
+    /// A script of the page.
     pub fn script(text: &str) -> Self {
         HttpResponse::new("text/javascript; charset=utf-8", POLICY, text)
     }
 
-    /// Data.
+    /// A value as JSON.
     pub fn json(value: &impl Serialize) -> Self {
         let text = serde_json::to_string(value).expect("texts and numbers always serialize");
         HttpResponse::new("application/json", POLICY, text)
     }
 
-    /// The same with another status than 200.
+    /// The same answer with another status.
     pub fn with_status(mut self, status: u16) -> Self {
         self.status = status;
         self
     }
 }
 
-/// An answer that says why not.
+/// An error answer. It is sent as JSON with a field `messages`.
 #[derive(Debug)]
 pub(super) struct HttpRefusal {
-    /// Of HTTP.
+    /// HTTP status.
     pub status: u16,
-    /// As on a terminal.
+    /// Text for the user, formatted as messages on a terminal.
     pub messages: String,
 }
 
 impl HttpRefusal {
-    /// One sentence.
+    /// A refusal with one sentence.
     pub fn new(status: u16, message: impl Into<String>) -> Self {
         HttpRefusal { status, messages: message.into() }
     }
 
-    /// What is wrong with the texts of the user.
+    /// A refusal (422) with diagnostics of the user's texts.
     pub fn of(diagnostics: &[Diagnostic], sources: &Sources) -> Self {
         HttpRefusal { status: 422, messages: full(sources, diagnostics) }
     }
@@ -120,18 +132,23 @@ impl From<super::CommandFailure> for HttpRefusal {
     }
 }
 
+/// The JSON body of a refusal.
 #[derive(Serialize)]
 struct RefusalBody<'a> {
     messages: &'a str,
 }
 
-/// Answers a request that the guard lets in. A panic is an answer too, and the server goes on.
+/// Reads a request, calls `act` and sends the answer.
+///
+/// `guard` runs first. A panic in `act` becomes a 500 answer, so that the worker thread survives.
 pub(super) fn answer(
     mut request: Request,
     act: impl FnOnce(&HttpRequest) -> Result<HttpResponse, HttpRefusal>,
     port: u16,
 ) {
+    // The guard sees the headers before the body is read, so a foreign site cannot make the server read an upload.
     let answered = guard::allowed(&request, port).and_then(|()| read(&mut request)).and_then(|ask| {
+        // The panic hook has printed the details on the terminal.
         let bug = |_| HttpRefusal::new(500, "this is a bug of bramah; its terminal says more");
         catch_unwind(AssertUnwindSafe(|| act(&ask))).unwrap_or_else(|panic| Err(bug(panic)))
     });
@@ -140,20 +157,24 @@ pub(super) fn answer(
     let headers = [
         ("Content-Type", answer.kind),
         ("Content-Security-Policy", answer.policy),
+        // Results change at any time; a cached answer would show old ones.
         ("Cache-Control", "no-store"),
+        // A browser must not run an uploaded text as a script because of what it looks like.
         ("X-Content-Type-Options", "nosniff"),
         ("Referrer-Policy", "no-referrer"),
         ("Cross-Origin-Resource-Policy", "same-origin"),
     ];
     let plain = Response::from_string(answer.body).with_status_code(answer.status);
+    // The length is known, so the body is sent in one piece instead of chunks.
     let mut response = plain.with_chunked_threshold(usize::MAX);
     for (name, value) in headers {
         response.add_header(Header::from_bytes(name, value).expect("the names and values above are plain"));
     }
-    // A page that has gone away does not matter.
+    // The browser may have closed the connection; there is nobody to report it to.
     let _ = request.respond(response);
 }
 
+/// Reads method, path, query and body. `Err`: another method (405), a broken body (400) or a too large one (413).
 fn read(request: &mut Request) -> Result<HttpRequest, HttpRefusal> {
     let post = match request.method() {
         Method::Get => false,
@@ -164,6 +185,8 @@ fn read(request: &mut Request) -> Result<HttpRequest, HttpRefusal> {
     let query = form_urlencoded::parse(query.as_bytes()).into_owned().collect();
     let path = path.to_owned();
     let mut body = Vec::new();
+    // One byte more than allowed, to detect a body that is too large without reading all of it. The length in the
+    // header may be missing or wrong.
     let limited = &mut request.as_reader().take(guard::LARGEST + 1);
     limited.read_to_end(&mut body).map_err(|why| HttpRefusal::new(400, format!("the request broke off: {why}")))?;
     if body.len() as u64 > guard::LARGEST {

@@ -1,7 +1,11 @@
-//! `bramah serve`: circuits and studies of a folder in a browser.
+//! `bramah serve`: an HTTP server that shows the circuits and studies of a folder in a browser on this machine.
 //!
-//! `guard` decides who may ask for what, `jobs` holds what takes time, `circuits` and `studies` answer. The page
-//! (`page/`) talks to them in JSON; nothing is kept in the server but uploaded recordings.
+//! Requests enter from the page (`page/`, compiled into the binary); JSON, HTML and scripts leave. `http` reads
+//! requests and writes answers, `guard` refuses foreign sites and paths, `folder` lists the files, `circuits` and
+//! `studies` answer the questions.
+//!
+//! Four worker threads take requests from one listening socket. Anything that takes longer is a job with a thread of
+//! its own (`jobs`), and the page polls its state. The server keeps no state except jobs and uploaded recordings.
 
 mod circuits;
 mod folder;
@@ -27,9 +31,9 @@ use http::{HttpRefusal, HttpRequest, HttpResponse};
 use jobs::ServerJobs;
 use studies::UploadStore;
 
-/// The port where it is free and none is asked for.
+/// The preferred port. Another free one is used when it is taken and the user asked for none.
 const PORT: u16 = 8737;
-/// Requests that are answered at the same time; what takes long is a job with a thread of its own.
+/// Number of worker threads, and so of requests that are answered at the same time. Long work runs in jobs.
 const THREADS: usize = 4;
 
 /// Open circuits and studies in a browser: networks, sliders, plots, diagnosis
@@ -54,36 +58,48 @@ pub(super) struct ServeArgs {
     open: bool,
 }
 
-/// The files of the page.
+/// The files of the page, embedded at compile time.
 static PAGE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/cli/serve/page");
 
-/// What all requests share.
+/// What all worker threads share. Its parts have their own locks.
+/// The served folder.
 struct ServerState {
     folder: ServerFolder,
+    /// The port that the server listens on; `guard` compares the `Host` header with it.
     port: u16,
+    /// Running and finished jobs.
     jobs: ServerJobs,
+    /// Uploaded recordings that are not in the folder.
     uploads: UploadStore,
 }
 
+/// Listens, prints the address and serves until the process is ended.
+///
+/// `Err`: the folder cannot be opened, the port is taken, or no thread can be started.
 pub(super) fn run(args: &ServeArgs) -> Result<CommandStatus, CommandFailure> {
     let folder = ServerFolder::new(&args.folder)?;
     let server = listen(args.port)?;
+    // The port may be chosen by the system (0), so it is read back from the socket.
     let port = server.server_addr().to_ip().map_or(0, |a| a.port());
     let address = format!("http://127.0.0.1:{port}/");
+    // The address is printed before the browser opens, as the socket accepts connections already.
     files::print(&format!("{address}  (the page of {}; Ctrl-C ends it)\n", folder.root().display()))?;
     if args.open {
         open(&address);
     }
     let shared = Arc::new(ServerState { folder, port, jobs: ServerJobs::default(), uploads: UploadStore::default() });
     let server = Arc::new(server);
+    // Fewer threads than wanted still serve; none do not.
     let workers: Vec<_> = (0..THREADS).filter_map(|_| worker(&server, &shared)).collect();
     if workers.is_empty() {
         return Err(CommandFailure::new(Code::FileAccess, "no thread can be started"));
     }
+    // The threads end only when `recv` fails, so this normally waits for Ctrl-C.
     workers.into_iter().for_each(|w| drop(w.join()));
     Ok(CommandStatus::Fine)
 }
 
+/// Starts one worker thread. `None` when the system starts no thread.
 fn worker(server: &Arc<Server>, shared: &Arc<ServerState>) -> Option<std::thread::JoinHandle<()>> {
     let (server, shared) = (server.clone(), shared.clone());
     let serve = move || {
@@ -91,10 +107,13 @@ fn worker(server: &Arc<Server>, shared: &Arc<ServerState>) -> Option<std::thread
             http::answer(request, |ask| answer(&shared, ask), shared.port);
         }
     };
+    // Listing circuits and opening one compiles models on this thread, which recurses deeply.
     std::thread::Builder::new().stack_size(STACK).spawn(serve).ok()
 }
 
+/// Binds a socket on 127.0.0.1. Without a wish, the preferred port is tried first, then any free one.
 fn listen(port: Option<u16>) -> Result<Server, CommandFailure> {
+    // Only the loopback address: machines on the network cannot connect.
     let at = |port| Server::http(SocketAddr::from((Ipv4Addr::LOCALHOST, port)));
     let tried = match port {
         Some(port) => at(port),
@@ -107,12 +126,16 @@ fn listen(port: Option<u16>) -> Result<Server, CommandFailure> {
     })
 }
 
-/// Shows an address in the browser; where there is none, the user has the address.
+/// Opens an address in the browser. A failure is ignored, since the address is also printed.
 fn open(address: &str) {
+    // Output of the browser must not mix with that of the server.
     let program = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
     let _ = Command::new(program).arg(address).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
 }
 
+/// Finds the function for a method and path. The first flag is true for POST.
+///
+/// Everything that writes or starts work is a POST, which `guard` accepts only from the page itself.
 fn answer(shared: &Arc<ServerState>, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
     let ServerState { folder, jobs, uploads, .. } = &**shared;
     match (ask.post, ask.path.as_str()) {
@@ -134,13 +157,15 @@ fn answer(shared: &Arc<ServerState>, ask: &HttpRequest) -> Result<HttpResponse, 
     }
 }
 
+/// The 404 answer for an unknown path.
 fn nothing(path: &str) -> HttpRefusal {
     HttpRefusal::new(404, format!("there is nothing at `{path}`"))
 }
 
-/// A file of the page.
+/// A file of the page with its content type. `None`: there is no such file, or its type is not served.
 fn page(path: &str) -> Option<HttpResponse> {
     let name = if path == "/" { "index.html" } else { path.strip_prefix('/')? };
+    // Looked up among the embedded files, so a path cannot reach the disk.
     let text = PAGE.get_file(name)?.contents_utf8()?;
     match Path::new(name).extension()?.to_str()? {
         "html" => Some(HttpResponse::page(text)),

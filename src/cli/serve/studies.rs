@@ -1,4 +1,8 @@
-//! Studies: recordings, the text that ties them to a circuit, comparison and diagnosis.
+//! Answers about studies: uploads of recordings, reading and saving a study, comparison and diagnosis.
+//!
+//! The page edits a study as text and as a form. The text (TOML) enters with each request; the parsed form, or the
+//! number of a job, leaves. Recordings come from the folder or from uploads, which are kept in memory until the study
+//! is saved.
 
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -22,47 +26,60 @@ use bramah_syntax::diag::render::full;
 use bramah_syntax::diag::{Code, Diagnostic, Sources};
 use bramah_syntax::world::{DiskWorld, MemoryWorld, Overlay};
 
-/// The name under which messages show the text of the page.
+/// The file name that messages show for the study text of the page.
 const STUDY: &str = "study.toml";
 
-/// Recordings that were uploaded and are not in the folder.
+/// Uploaded recordings that are not in the folder. They are lost when the server ends, unless the study is saved.
 #[derive(Default)]
 pub(super) struct UploadStore {
+    /// Texts by file name.
     files: Mutex<BTreeMap<String, String>>,
 }
 
+/// Summary of a recording: the JSON answer to an upload.
 #[derive(Serialize)]
 struct RecordingColumns {
     name: String,
+    /// Number of rows.
     rows: usize,
+    /// Name of the time column.
     time: String,
+    /// Time of the first row in seconds.
     start: f64,
+    /// Time of the last row in seconds.
     end: f64,
+    /// All columns but the time.
     columns: Vec<RecordingColumn>,
 }
 
+/// A column of a recording.
 #[derive(Serialize)]
 struct RecordingColumn {
+    /// As the file states it; empty when it does not.
     name: String,
     unit: String,
 }
 
 impl UploadStore {
-    /// Takes a recording.
+    /// Stores an uploaded CSV file and answers with its columns. `Err`: the name is no plain file name, or the text
+    /// cannot be read.
     pub fn take(&self, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
         let name = ask.value("name").to_owned();
+        // The name is joined to a folder later, so it must not contain one.
         if name.is_empty() || name.contains(['/', '\\']) || !name.to_lowercase().ends_with(".csv") {
             return Err(unusable(&name, "is no name of a recording: it ends in `.csv` and names no folder").into());
         }
         let text = ask.text();
+        // Read before it is stored, so that only usable recordings are kept.
         let columns = columns(&name, &text)?;
         self.files().insert(name, text);
         Ok(HttpResponse::json(&columns))
     }
 
-    /// The columns of a recording, uploaded or in the folder.
+    /// The columns of a recording. An upload takes precedence over a file of the same name in the folder.
     pub fn columns(&self, folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
         let name = ask.value("name");
+        // The lock is released at the end of this statement, before the disk is read.
         let uploaded = self.files().get(name).cloned();
         let text = match uploaded {
             Some(text) => text,
@@ -71,16 +88,19 @@ impl UploadStore {
         Ok(HttpResponse::json(&columns(name, &text)?))
     }
 
+    /// Locks the uploads. A poisoned lock is used on.
     fn files(&self) -> MutexGuard<'_, BTreeMap<String, String>> {
         self.files.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
+/// Reads a CSV text and describes its columns. `Err` (422) has the diagnostics of the reader.
 fn columns(name: &str, text: &str) -> Result<RecordingColumns, HttpRefusal> {
     let mut sources = Sources::default();
     let file = sources.add(name.to_owned(), text.to_owned());
     let read = read_csv(&sources, file, None, ReadStrictness::Result);
     let Some(found) = read.value else { return Err(HttpRefusal::of(&read.diagnostics, &sources)) };
+    // The reader leaves the time column out of the signals.
     let is_time = |n: &String| found.index(n).is_none();
     Ok(RecordingColumns {
         name: name.to_owned(),
@@ -92,7 +112,7 @@ fn columns(name: &str, text: &str) -> Result<RecordingColumns, HttpRefusal> {
     })
 }
 
-/// The text of a study in the folder, and the folder that its paths begin in.
+/// The text of a study file, and the folder to which its paths are relative.
 pub(super) fn text(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
     let file = ask.value("file");
     let text = folder.text(file)?;
@@ -100,14 +120,17 @@ pub(super) fn text(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpRespo
     Ok(HttpResponse::json(&serde_json::json!({ "text": text, "folder": within })))
 }
 
+/// The JSON body of requests about a study.
 #[derive(Deserialize)]
 struct StudyText {
+    /// The study as TOML text.
     text: String,
     #[serde(default)]
+    /// Folder to which the paths of the study are relative.
     folder: String,
 }
 
-/// A study as the page's form has it.
+/// A study in the form that the page edits. Optional values are texts, empty when they are missing.
 #[derive(Serialize)]
 struct StudyForm {
     model: String,
@@ -119,45 +142,58 @@ struct StudyForm {
     effects: EffectsForm,
 }
 
+/// An input that a column drives.
 #[derive(Serialize)]
 struct InputForm {
     name: String,
     column: String,
     unit: String,
+    /// Samples are held until the next one; otherwise joined by straight lines.
     hold: bool,
+    /// `measured` or `command`.
     kind: &'static str,
 }
 
+/// A recorded signal with the variable it belongs to.
 #[derive(Serialize)]
 struct SignalForm {
     name: String,
     variable: String,
     column: String,
     unit: String,
+    /// 1 or -1: the column may have the opposite sign.
     sign: f64,
     full_scale: String,
     accuracy: String,
 }
 
+/// A recording of the study.
 #[derive(Serialize)]
 struct RecordingForm {
     file: String,
+    /// `train` or `held`.
     role: &'static str,
+    /// Name of the time column; empty for the usual one.
     time: String,
+    /// First and last time used, in seconds; `None` for all.
     window: Option<(f64, f64)>,
+    /// The file may be missing.
     optional: bool,
     pieces: usize,
 }
 
+/// A parameter of the study.
 #[derive(Serialize)]
 struct ParameterForm {
     name: String,
+    /// `exact` for a value that is taken as known, else empty.
     entry: &'static str,
     sigma: String,
     min: String,
     max: String,
 }
 
+/// Which effects the diagnosis considers, and where.
 #[derive(Serialize)]
 struct EffectsForm {
     include: Vec<String>,
@@ -167,6 +203,7 @@ struct EffectsForm {
 }
 
 impl StudyForm {
+    /// Converts a parsed study.
     fn of(study: Study) -> Self {
         let amount = |a: Option<Amount>| a.map_or_else(String::new, |a| a.to_string());
         let role = |role| if role == RecordingRole::Train { "train" } else { "held" };
@@ -231,13 +268,14 @@ impl StudyForm {
     }
 }
 
-/// Reads the text of a study into the page's form.
+/// Parses the study text of the page and answers with its form. `Err` (422) has the diagnostics.
 pub(super) fn read(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
     let given: StudyText = ask.json()?;
     let mut sources = Sources::default();
     Ok(HttpResponse::json(&StudyForm::of(parsed(folder, &given, &mut sources)?)))
 }
 
+/// Parses a study text. `Err`: its folder is outside the served one (403), or it has errors (422).
 fn parsed(folder: &ServerFolder, given: &StudyText, sources: &mut Sources) -> Result<Study, HttpRefusal> {
     folder.inside(&given.folder)?;
     let file = sources.add(Path::new(&given.folder).join(STUDY).display().to_string(), given.text.clone());
@@ -245,7 +283,7 @@ fn parsed(folder: &ServerFolder, given: &StudyText, sources: &mut Sources) -> Re
     checked.value.ok_or_else(|| HttpRefusal::of(&checked.diagnostics, sources))
 }
 
-/// Puts model and recordings side by side.
+/// Starts a job that simulates along the recordings and draws model and recordings together.
 pub(super) fn compare(
     folder: &ServerFolder,
     ask: &HttpRequest,
@@ -260,7 +298,7 @@ pub(super) fn compare(
     })
 }
 
-/// Diagnoses the gap.
+/// Starts a job that diagnoses where model and recordings differ. The result has a report and files for download.
 pub(super) fn diagnose(
     folder: &ServerFolder,
     ask: &HttpRequest,
@@ -270,9 +308,11 @@ pub(super) fn diagnose(
     begin(folder, ask, uploads, jobs, |question, sources, job| {
         let held = question.held(None, sources).map_err(|d| full(sources, &d))?;
         let mut progress = |stage: bramah_gap::Stage| {
+            // The diagnosis calls this at each stage, which is also the only place where it can be stopped.
             job.at(stage.to_string(), None);
             if job.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
+        // The clock is passed in because the crates below the command do not read it.
         let gone = || Duration::from_secs_f64(job.seconds());
         let budget = Some(Budget { time: None, gone: &gone });
         let options = DiagnoseOptions { budget, ..DiagnoseOptions::default() };
@@ -285,6 +325,7 @@ pub(super) fn diagnose(
             DownloadFile { name: "report.html", text: report.clone() },
         ];
         let fixed = diagnosis.corrected();
+        // Without an accepted effect there is no corrected model, and so no file.
         files.extend(fixed.value.map(|text| DownloadFile { name: "fixed.mo", text }));
         let warnings = [diagnosis.diagnostics(), &fixed.diagnostics].concat();
         let messages = format!("{}\n\n{}", full(sources, &warnings), diagnosis.words());
@@ -292,7 +333,10 @@ pub(super) fn diagnose(
     })
 }
 
-/// Begins a job on the question that a study asks, with uploaded recordings laid over the folder of the study.
+/// Starts a job on the question that a study asks.
+///
+/// Uploaded recordings shadow files of the study's folder. `work` runs in the job. `Err`: the study cannot be parsed or
+/// names files outside the served folder.
 fn begin(
     folder: &ServerFolder,
     ask: &HttpRequest,
@@ -303,8 +347,10 @@ fn begin(
     let given: StudyText = ask.json()?;
     let mut sources = Sources::default();
     let study = parsed(folder, &given, &mut sources)?;
+    // Before the job starts: the job reads files through the disk without further checks.
     stays_inside(folder, &study)?;
     let mut files = MemoryWorld::default();
+    // Copied, so that later uploads do not change a running job and its lock is free.
     for (name, text) in uploads.files().iter() {
         files.add(study.folder.join(name), text.clone());
     }
@@ -313,6 +359,7 @@ fn begin(
         let world = Overlay { base: &DiskWorld, files };
         match question(&world, &study, None, &mut sources) {
             Ok(question) => work(question, &mut sources, job),
+            // Errors of the model point into the model's texts, others into the study.
             Err(StudyError { diagnostics, sources: of_model, .. }) => {
                 Err(full(of_model.as_ref().unwrap_or(&sources), &diagnostics))
             }
@@ -320,7 +367,7 @@ fn begin(
     })
 }
 
-/// Files that a study names lie in the folder that is served.
+/// Checks that all files that a study names are inside the served folder. `Err` is a 403.
 fn stays_inside(folder: &ServerFolder, study: &Study) -> Result<(), HttpRefusal> {
     let files = study.recordings.iter().map(|r| &r.file).chain(&study.model).chain(&study.effects.folder);
     for file in files {
@@ -329,7 +376,10 @@ fn stays_inside(folder: &ServerFolder, study: &Study) -> Result<(), HttpRefusal>
     Ok(())
 }
 
-/// `rig/../press` as `press`: a study may name what lies beside its folder.
+/// Resolves `..` in the text of a path: `rig/../press` becomes `press`.
+///
+/// A study may name files next to its folder, but `guard::inside` refuses any `..`. Leading ones are kept and refused
+/// there.
 fn lexical(path: &Path) -> String {
     let mut kept: Vec<std::path::Component<'_>> = Vec::new();
     for part in path.components() {
@@ -345,15 +395,22 @@ fn lexical(path: &Path) -> String {
     kept.iter().collect::<std::path::PathBuf>().display().to_string()
 }
 
+/// The JSON body of `/api/study/save`.
 #[derive(Deserialize)]
 struct SaveRequest {
+    /// Path of the study file, relative to the served folder.
     file: String,
+    /// The study as TOML text.
     text: String,
     #[serde(default)]
+    /// Overwrite files that have other content.
     replace: bool,
 }
 
-/// Writes a study and the uploaded recordings that it names.
+/// Writes a study and the uploaded recordings that it names into the folder.
+///
+/// `Err`: the name does not end in `.toml`, the study has errors, or (409) a file exists with other content and
+/// `replace` is not set.
 pub(super) fn save(
     folder: &ServerFolder,
     ask: &HttpRequest,
@@ -365,12 +422,14 @@ pub(super) fn save(
     }
     let within = Path::new(&file).parent().unwrap_or(Path::new(""));
     let given = StudyText { text, folder: within.display().to_string() };
+    // Parsed before anything is written: the names of the recordings are needed, and a broken study is not saved.
     let study = parsed(folder, &given, &mut Sources::default())?;
     let mut written = vec![(file.clone(), given.text.clone())];
     for recording in &study.recordings {
         let name = within.join(&recording.file).display().to_string();
         written.extend(uploads.files().get(&recording.file).map(|text| (name, text.clone())));
     }
+    // All files are checked before the first one is written, so that a refusal leaves the folder unchanged.
     if !replace {
         for (name, text) in &written {
             if std::fs::read(folder.inside(name)?).is_ok_and(|there| there != text.as_bytes()) {

@@ -12,34 +12,39 @@ const NEWTON: usize = 12;
 /// Residuals below this share of the first one, and corrections below this share of their unknowns, are rounding.
 const CONVERGED: f64 = 1e-11;
 
+/// The point that Newton's method moves, and what it works with there. One entry a column unless said otherwise.
+pub(super) struct NewtonPoint<'a> {
+    /// Unknowns, states, parameters and inputs; implicit unknowns are updated.
+    pub y: &'a mut [f64],
+    /// Rates; updated.
+    pub yp: &'a mut [f64],
+    /// Buffer for residuals, one a row.
+    pub residual: &'a mut [f64],
+    /// Buffer for the entries of the Jacobian.
+    pub entries: &'a mut [f64],
+    /// Buffer for those of the Jacobian that counts rates, for implicit rates.
+    pub torn_entries: &'a mut [f64],
+    /// All values of the system, by its layout; updated.
+    pub values: &'a mut [f64],
+}
+
 impl EvaluationPlan {
-    /// Solves for the implicit unknowns from their last values, and for all explicit rates.
-    ///
-    /// `y`, `yp` and `values` are updated; `residual`, `entries` and `torn_entries` are buffers. False where the
-    /// iteration does not converge.
-    pub(super) fn newton(
-        &self,
-        time: f64,
-        y: &mut [f64],
-        yp: &mut [f64],
-        residual: &mut [f64],
-        entries: &mut [f64],
-        torn_entries: &mut [f64],
-        values: &mut [f64],
-    ) -> Result<bool, LocalError> {
+    /// Solves for the implicit unknowns from their last values, and for all explicit rates. False where the iteration
+    /// does not converge.
+    pub(super) fn newton(&self, time: f64, at: &mut NewtonPoint<'_>) -> Result<bool, LocalError> {
         let system = &self.system;
         let mut first = 0.0;
         // The rate of an explicit row is its residual at rate 0. From a much larger rate only rounding would remain.
-        self.explicit.iter().for_each(|&j| yp[j] = 0.0);
+        self.explicit.iter().for_each(|&j| at.yp[j] = 0.0);
         for iteration in 0..NEWTON {
-            if system.residual(time, y, yp, values, residual).is_err() {
+            if system.residual(time, at.y, at.yp, at.values, at.residual).is_err() {
                 // Without unknowns there is nothing to search for, so the failure is final.
                 return if self.implicit.is_empty() { Err(LocalError::NonFinite) } else { Ok(false) };
             }
             for &j in &self.explicit {
-                yp[j] -= residual[j];
+                at.yp[j] -= at.residual[j];
             }
-            let size = self.implicit.iter().map(|i| residual[i.0].abs()).fold(0.0, f64::max);
+            let size = self.implicit.iter().map(|i| at.residual[i.0].abs()).fold(0.0, f64::max);
             // Residuals have fallen to rounding.
             if self.implicit.is_empty() || size == 0.0 || iteration > 0 && size <= CONVERGED * first {
                 return Ok(true);
@@ -47,22 +52,22 @@ impl EvaluationPlan {
             if iteration == 0 {
                 first = size;
             }
-            let Ok(change) = self.correction(time, y, yp, residual, entries, torn_entries, values) else {
+            let Ok(change) = self.correction(time, at) else {
                 return Ok(false);
             };
             let mut moved = 0.0_f64;
             for (&(column, torn), d) in self.implicit.iter().zip(change.iter()) {
-                let unknown = if torn { &mut yp[column] } else { &mut y[column] };
+                let unknown = if torn { &mut at.yp[column] } else { &mut at.y[column] };
                 *unknown -= d;
                 moved = moved.max(d.abs() / (unknown.abs() + f64::MIN_POSITIVE));
             }
             if moved < CONVERGED {
                 // The corrections are rounding, so the residual cannot shrink further.
-                if system.residual(time, y, yp, values, residual).is_err() {
+                if system.residual(time, at.y, at.yp, at.values, at.residual).is_err() {
                     return Ok(false);
                 }
                 for &j in &self.explicit {
-                    yp[j] -= residual[j];
+                    at.yp[j] -= at.residual[j];
                 }
                 return Ok(true);
             }
@@ -92,16 +97,8 @@ impl EvaluationPlan {
     }
 
     /// The Newton step of the implicit unknowns: the solution of their own rows and columns of the Jacobian.
-    fn correction(
-        &self,
-        time: f64,
-        y: &[f64],
-        yp: &[f64],
-        residual: &[f64],
-        entries: &mut [f64],
-        torn_entries: &mut [f64],
-        values: &mut [f64],
-    ) -> Result<DVector<f64>, LocalError> {
+    fn correction(&self, time: f64, at: &mut NewtonPoint<'_>) -> Result<DVector<f64>, LocalError> {
+        let NewtonPoint { y, yp, residual, entries, torn_entries, values } = at;
         let system = &self.system;
         let torn = self.implicit.iter().any(|i| i.1);
         system.jacobian(time, 0.0, y, yp, values, entries).map_err(|_| LocalError::NonFinite)?;

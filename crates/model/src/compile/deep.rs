@@ -1,10 +1,13 @@
-//! Stacks that are deep enough.
+//! Threads with stacks that are deep enough to compile.
+//!
+//! The parser and the instance recurse as deeply as a model is nested.
 
-/// Bytes of a thread that compiles: deeply nested models recurse, and the stacks that threads have by themselves are too
-/// small for the deepest that are accepted.
+/// The size in bytes of the stack of a thread that compiles. The default size of threads is too small for the deepest
+/// models that are accepted. The operating system provides memory only for what is used.
 pub const STACK: usize = 1 << 28;
 
-/// Acts on a thread with a deep stack; the caller's may be of any size.
+/// Runs a function on a thread with a deep stack and returns its result; the caller's stack may be of any size. A panic
+/// of the function continues in the caller.
 pub fn deep<T: Send>(act: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, act);

@@ -1,4 +1,6 @@
-//! Messages of all stages put together: in order, each said once, and what concerns the texts of libraries.
+//! Messages of all stages put together: sorted, each said once, and shortened for the texts of libraries.
+//!
+//! `compile::with_class` calls these functions on the list of all diagnostics. None of them adds an error.
 
 use super::Request;
 use crate::resolve::Library;
@@ -6,13 +8,16 @@ use bramah_syntax::ast;
 use bramah_syntax::diag::{Code, Diagnostic, Sources, Span};
 use std::path::Path;
 
-/// Errors first shown where they stand: by file and place, messages without a place first.
+/// Sorts messages by file and place; messages without a place come first. Stable, so messages of one place keep their
+/// order.
 pub fn sort_messages(diagnostics: &mut [Diagnostic]) {
     diagnostics.sort_by_key(|d| d.labels.first().map(|l| (l.span.file, l.span.start)));
 }
 
-/// One mistake in a class shows in each of its instances: one message is enough where all places are the same. Two open
-/// ports of one component differ in the second place.
+/// Drops repeated messages: those with the same code and the same places.
+///
+/// One mistake in a class shows in each of its instances, and one message is enough. Two open ports of one component
+/// differ in the second place, so both stay.
 pub(super) fn once(diagnostics: &mut Vec<Diagnostic>) {
     let mut seen = rustc_hash::FxHashSet::default();
     diagnostics.retain(|d| {
@@ -21,7 +26,8 @@ pub(super) fn once(diagnostics: &mut Vec<Diagnostic>) {
     });
 }
 
-/// A class that is not there is named wherever it is asked for: the first place stands for all.
+/// Keeps the first message about each missing class, with a note that counts the others. A missing class is reported
+/// wherever it is named.
 pub(super) fn missing_once(diagnostics: &mut Vec<Diagnostic>) {
     let mut first: Vec<(usize, usize)> = Vec::new();
     for (i, d) in diagnostics.iter().enumerate().filter(|(_, d)| d.code == Code::UnknownClass) {
@@ -37,21 +43,22 @@ pub(super) fn missing_once(diagnostics: &mut Vec<Diagnostic>) {
     retain_indexed(diagnostics, |i, d| d.code != Code::UnknownClass || first.iter().any(|(f, _)| *f == i));
 }
 
-/// Keeps what passes a test of its place in the list.
+/// Keeps the messages for which `keep` is true, given their positions in the list.
 fn retain_indexed(diagnostics: &mut Vec<Diagnostic>, keep: impl Fn(usize, &Diagnostic) -> bool) {
     let mut next = 0..;
     diagnostics.retain(|d| next.next().is_some_and(|i| keep(i, d)));
 }
 
-/// What is said of the texts of libraries: warnings there are for those who write them, and of several errors the first one
-/// stands for all, for the others are elsewhere in a class that is not the user's or follow from it.
+/// Shortens what is said about the texts of libraries. Warnings there are for those who write them, so they are
+/// dropped. Of several errors the first one stays, with a note that counts the others: these are in classes that are
+/// not the user's, or follow from the first one.
 pub(super) fn of_libraries(diagnostics: &mut Vec<Diagnostic>, sources: &Sources, request: &Request) {
     let of_library = |span: Span| {
         let file = Path::new(sources.get(span.file).path.as_str());
         request.libraries.iter().any(|folder| file.starts_with(folder))
     };
     let foreign = |d: &Diagnostic| d.labels.first().is_some_and(|l| of_library(l.span));
-    // a place in the user's text as well makes a warning the user's
+    // A warning with a place in the user's text as well concerns the user.
     diagnostics.retain(|d| d.is_error() || d.labels.is_empty() || !d.labels.iter().all(|l| of_library(l.span)));
     let mut errors = diagnostics.iter().enumerate().filter(|(_, d)| d.is_error() && foreign(d)).map(|(i, _)| i);
     let (Some(first), rest) = (errors.next(), errors.count()) else { return };
@@ -63,8 +70,8 @@ pub(super) fn of_libraries(diagnostics: &mut Vec<Diagnostic>, sources: &Sources,
     retain_indexed(diagnostics, |i, d| i <= first || !(d.is_error() && foreign(d)));
 }
 
-/// Libraries of other versions than the user's classes say they use, `uses(Modelica(version = "3.2.3"))`, unless the library
-/// says that nothing has to be converted (MLS 18.8).
+/// Messages about libraries of other versions than the user's classes use, as in `uses(Modelica(version = "3.2.3"))`,
+/// unless the library says that nothing has to be converted from that version (MLS 18.8).
 pub(super) fn other_versions(library: &mut Library<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for id in library.own.clone() {
@@ -91,7 +98,7 @@ pub(super) fn other_versions(library: &mut Library<'_>) -> Vec<Diagnostic> {
     found
 }
 
-/// The arguments inside `name(...)` of an annotation.
+/// The arguments inside each `name(...)` of an annotation.
 fn inner<'a>(
     arguments: &'a [ast::ModificationArgument],
     name: &'static str,
@@ -107,7 +114,7 @@ fn inner<'a>(
         .flatten()
 }
 
-/// The texts of `name = "..."` in an annotation.
+/// The texts of each `name = "..."` in an annotation.
 fn texts<'a>(
     arguments: impl Iterator<Item = &'a ast::ModificationArgument>,
     name: &'static str,

@@ -1,4 +1,9 @@
-//! The pipeline: from files to a flat model, a DAE and a system ready to run. Every command and test goes this way.
+//! The pipeline: from a request to a flat model or sorted equations. Every command and test goes this way.
+//!
+//! Enters: a [`Request`] and a `World` to read files from. Leaves: a [`CompileOutcome`] with the texts, the messages of
+//! all stages and the value. The stages are, in order: `resolve`, `instance`, `network`, `flat`, `unit_check`,
+//! `structure`. A stage with errors ends the pipeline, so that its consequences are not reported. [`flatten`] goes up
+//! to the flat model, [`sort`] up to the sorted equations.
 
 mod deep;
 mod messages;
@@ -18,36 +23,37 @@ use bramah_syntax::diag::{Code, Diagnostic, Sources, StageResult};
 use bramah_syntax::world::World;
 use std::path::{Path, PathBuf};
 
-/// What to compile.
+/// What to compile, and where to find what it needs.
 #[derive(Clone, Debug, Default)]
 pub struct Request {
     /// A file, a folder that is a package, or the dotted name of a class that ships with bramah.
     pub source: PathBuf,
     /// The class to run; may be left out where only one can run.
     pub model: Option<String>,
-    /// Values given from outside.
+    /// Values given from outside, in place of those in the text.
     pub overrides: Vec<Override>,
-    /// Folders that hold further packages, in order of precedence.
+    /// Folders that contain further packages, in order of precedence.
     pub libraries: Vec<PathBuf>,
     /// Further files and packages whose classes `source` may name.
     pub beside: Vec<PathBuf>,
     /// Where relative names of data files begin, if not at the folder of `source`.
     pub data_folder: Option<PathBuf>,
-    /// C sources and shared libraries that external functions may call; `annotations` for what their annotations name
-    /// alone. Without any, C code of a model is refused. It runs unguarded.
+    /// C sources and shared libraries that external functions may call. The entry `annotations` allows what the
+    /// annotations of the functions name, and nothing else. Without any entry, C code of a model is refused. The code
+    /// runs unguarded.
     pub externals: Vec<PathBuf>,
-    /// Parameters will take other values in the same model: one that is 0 takes no derivative out of the equations.
+    /// Parameters will take other values in the same model, so one that is 0 removes no derivative from the equations.
     pub varied: bool,
 }
 
-/// What became of a [`Request`]: texts for messages, messages, and the value if there were no errors.
+/// The result of a [`Request`].
 #[derive(Debug)]
 pub struct CompileOutcome<T> {
-    /// All texts read.
+    /// All texts that were read; the places of messages refer to them.
     pub sources: Sources,
     /// Errors, warnings and notes.
     pub diagnostics: Vec<Diagnostic>,
-    /// The result.
+    /// The result; `None` where there were errors.
     pub value: Option<T>,
 }
 
@@ -60,11 +66,12 @@ pub struct FrontEndResult {
     pub graph: ComponentGraph,
 }
 
-/// The pipeline up to the sorted equations.
+/// Compiles up to the sorted equations. Returns the flat model, the graph of its components and the sorted system.
 pub fn sort(world: &dyn World, request: &Request) -> CompileOutcome<(FlatModel, ComponentGraph, Dae)> {
     let CompileOutcome { sources, mut diagnostics, value } = flatten(world, request);
     let value = value.and_then(|f| {
         diagnostics.extend(unit_check::check(&f.flat));
+        // Again after the unit check: its warnings about texts of libraries are filtered like all others.
         messages::of_libraries(&mut diagnostics, &sources, request);
         let dae = analyze(&f.flat).sink(&mut diagnostics);
         Some((f.flat, f.graph, dae?))
@@ -72,7 +79,7 @@ pub fn sort(world: &dyn World, request: &Request) -> CompileOutcome<(FlatModel, 
     CompileOutcome { sources, diagnostics, value }
 }
 
-/// Sorts the equations of a flat model; where they do not determine the unknowns, says why.
+/// Sorts the equations of a flat model. Where they do not determine the unknowns, the diagnostics say why.
 pub fn analyze(flat: &FlatModel) -> StageResult<Dae> {
     let mut checked = structure::analyze(flat, &StateChoice::default());
     if checked.diagnostics.iter().any(is_structural) {
@@ -81,23 +88,26 @@ pub fn analyze(flat: &FlatModel) -> StageResult<Dae> {
     checked
 }
 
+/// Whether a diagnostic says that the equations do not determine the unknowns (E301, E302, E303).
 fn is_structural(d: &Diagnostic) -> bool {
     matches!(d.code, Code::Singular | Code::NoReference | Code::Overdetermined)
 }
 
-/// The first level at which something is wrong: a cause in one component is reported instead of its consequences.
+/// The messages of the first level at which something is wrong: a cause in one component is reported instead of its
+/// consequences. `found` itself where no such cause shows.
 fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let solvable = |changed: &FlatModel| structure::analyze(changed, &StateChoice::default()).value.is_some();
     let causes = flat::explain(flat, &solvable);
     if causes.is_empty() { found } else { causes }
 }
 
-/// The pipeline up to the flat model.
+/// Compiles up to the flat model.
 pub fn flatten(world: &dyn World, request: &Request) -> CompileOutcome<FrontEndResult> {
     inspect(world, request, |instance, network, flat| FrontEndResult { flat, graph: network.graph(instance) })
 }
 
-/// The pipeline up to the flat model, with a look at the component tree and the connections it was made from.
+/// Compiles up to the flat model and calls `look` with it, with the component tree and with the connections that it was
+/// made from. `look` is not called where there are errors.
 pub fn inspect<T>(
     world: &dyn World,
     request: &Request,
@@ -111,7 +121,8 @@ pub fn inspect<T>(
     })
 }
 
-/// The full name of a model with its components and connections, also where ports are open or equations do not fit together.
+/// The full name of a model with its components and connections, also where ports are open or equations do not fit
+/// together: nothing is flattened.
 pub fn graph(world: &dyn World, request: &Request) -> CompileOutcome<(String, ComponentGraph)> {
     with_class(world, request, |library, class, diagnostics| {
         let name = library.full_name(class);
@@ -119,7 +130,8 @@ pub fn graph(world: &dyn World, request: &Request) -> CompileOutcome<(String, Co
     })
 }
 
-/// Finds the class that is meant, and gathers what is said on the way.
+/// Finds the class of a request, calls `act` with it, and puts the messages of all stages together. The value is `None`
+/// if any message is an error.
 fn with_class<T>(
     world: &dyn World,
     request: &Request,
@@ -134,6 +146,7 @@ fn with_class<T>(
     let value = find_model(world, &mut library, request)
         .map_err(|d| diagnostics.push(*d))
         .ok()
+        // With errors in the texts, the stages would report their consequences.
         .filter(|_| !library.diagnostics.iter().any(Diagnostic::is_error))
         .and_then(|class| act(&mut library, class, &mut diagnostics));
     let mut all = std::mem::take(&mut library.diagnostics);
@@ -142,6 +155,7 @@ fn with_class<T>(
         diagnostics.retain(|d| d.code != Code::BadModel);
     }
     all.extend(diagnostics);
+    // In this order: repeated messages first, then the notes that count what was left out.
     messages::once(&mut all);
     all.extend(messages::other_versions(&mut library));
     messages::missing_once(&mut all);
@@ -151,14 +165,14 @@ fn with_class<T>(
     CompileOutcome { sources: std::mem::take(&mut library.sources), diagnostics: all, value: value.filter(|_| !failed) }
 }
 
-/// Folders with packages, in order: the request's, then what ships with bramah.
+/// Folders with packages, in order of precedence: those of the request, then what ships with bramah.
 fn roots<'a>(world: &'a dyn World, shipped: &'a ShippedWorld, request: &Request) -> Vec<(&'a dyn World, PathBuf)> {
     let own = request.libraries.iter().map(|l| (world, l.clone()));
     own.chain(ShippedWorld::roots().map(|r| (shipped as &dyn World, r))).collect()
 }
 
 impl Request {
-    /// Where relative names of data files begin: as said, or at the folder of the model's file.
+    /// Where relative names of data files begin: the folder that the request names, or else that of the model's file.
     pub fn data_folder(&self, world: &dyn World) -> PathBuf {
         let source = self.source.as_path();
         let own = || if world.list(source).is_some() { Some(source) } else { source.parent() };
@@ -166,6 +180,8 @@ impl Request {
     }
 }
 
+/// Builds the instance of a class and its network, and calls `act` with them. `None` where they have errors, whose
+/// messages go to `diagnostics`.
 fn with_network<T>(
     library: &mut Library<'_>,
     class: ClassId,
@@ -184,7 +200,7 @@ fn with_network<T>(
     act(&mut instance, &network, diagnostics)
 }
 
-/// The class that the request means.
+/// The class that a request means. Reads the files that it names. `Err` where there is none, or several.
 fn find_model<'a>(
     world: &'a dyn World,
     library: &mut Library<'a>,
@@ -193,6 +209,7 @@ fn find_model<'a>(
     let source = &request.source;
     let exists = world.list(source).is_some() || world.read(source).is_ok();
     let text = source.to_string_lossy();
+    // An existing file goes before a shipped class of the same name.
     if !exists && is_dotted(&text) {
         let full = request.model.as_deref().filter(|m| m.contains('.') || *m == text).unwrap_or(&text);
         return library.find(full).ok_or_else(|| Box::new(no_such_shipped(&text)));
@@ -208,6 +225,7 @@ fn find_model<'a>(
     }
 }
 
+/// Whether a text has the form of a dotted class name and not of a Modelica file.
 fn is_dotted(text: &str) -> bool {
     !text.is_empty()
         && !text.ends_with(".mo")
@@ -215,13 +233,14 @@ fn is_dotted(text: &str) -> bool {
         && text.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '.')
 }
 
+/// The error for a source that is neither a file nor a shipped class.
 fn no_such_shipped(name: &str) -> Diagnostic {
     Diagnostic::new(Code::FileAccess, format!("there is no file, folder or shipped class `{name}`")).help(
         "give the path of a `.mo` file or package folder, or the dotted name of a class such as `ServoPump.DeadZone`",
     )
 }
 
-/// A user's top-level class hides a shipped one of the same name.
+/// Adds a message for each top-level class of the user that hides a shipped one of the same name.
 fn note_shadowed(library: &mut Library<'_>) {
     for id in library.own.clone() {
         let ident = library.class(id).name;
@@ -238,11 +257,12 @@ fn note_shadowed(library: &mut Library<'_>) {
     }
 }
 
+/// The class of a name: a full name, or one relative to a class of the source. `Err` suggests the nearest name.
 fn named_model(library: &mut Library<'_>, given: &[ClassId], name: &str) -> Result<ClassId, Box<Diagnostic>> {
     if let Some(id) = library.find(name) {
         return Ok(id);
     }
-    // A name relative to the file's only class is understood too.
+    // The user may leave out the name of the package that the file contains.
     for &id in given {
         let full = format!("{}.{name}", library.full_name(id));
         if let Some(found) = library.find(&full) {
@@ -261,25 +281,26 @@ fn named_model(library: &mut Library<'_>, given: &[ClassId], name: &str) -> Resu
     Err(Box::new(d))
 }
 
+/// Up to ten names after an introduction.
 fn listed(intro: &str, names: &[String]) -> String {
     let shown: Vec<String> = names.iter().take(10).map(|n| format!("`{n}`")).collect();
     let more = if names.len() > 10 { format!(" and {} more", names.len() - 10) } else { String::new() };
     format!("{intro} {}{more}", shown.join(", "))
 }
 
-/// A model that can run.
+/// A model that can run, as lists show it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RunnableModel {
     /// Its full name.
     pub class: String,
-    /// Its description, or empty.
+    /// Its description string, or empty.
     pub description: String,
-    /// It has an `experiment` annotation.
+    /// Whether it has an `experiment` annotation.
     pub experiment: bool,
 }
 
-/// The models of a request's source that can run: those with an `experiment` annotation, or all where none has
-/// one; of the request's class alone and what stands in it, where one is named.
+/// The models of a request's source that can run: those with an `experiment` annotation, or all where none has one. If
+/// the request names a class, only that class and what is in it.
 ///
 /// # Errors
 /// The source cannot be read, or there is no such class.
@@ -304,7 +325,8 @@ pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<RunnableMode
     Ok(chosen.into_iter().map(described).collect())
 }
 
-/// Without a name: the one class with an `experiment`, or the one model there is.
+/// The model of a request without a name: the only class with an `experiment`, or the only class that can run. `Err`
+/// lists the candidates.
 fn only_model(library: &mut Library<'_>, source: &Path, given: &[ClassId]) -> Result<ClassId, Box<Diagnostic>> {
     let mut runnable = Vec::new();
     given.iter().for_each(|&id| collect_runnable(library, id, &mut runnable));
@@ -332,7 +354,7 @@ fn only_model(library: &mut Library<'_>, source: &Path, given: &[ClassId]) -> Re
     Err(Box::new(d))
 }
 
-/// Models of a class and its nested packages that could be run.
+/// Appends the models of a class and its nested packages that can run: models and blocks that are not partial.
 fn collect_runnable(library: &mut Library<'_>, id: ClassId, out: &mut Vec<ClassId>) {
     let class = library.class(id);
     if matches!(class.kind, ClassKind::Model | ClassKind::Block | ClassKind::Class) && !class.prefixes.partial {
@@ -340,6 +362,7 @@ fn collect_runnable(library: &mut Library<'_>, id: ClassId, out: &mut Vec<ClassI
     }
     if class.kind == ClassKind::Package {
         let mut names: Vec<_> = nested_classes(class).map(|c| c.name.name).collect();
+        // Classes in files of their own are not part of the text of the package.
         names.extend(library.folder_members(id));
         for name in names {
             if let Some(child) = library.child(id, name) {
@@ -349,6 +372,7 @@ fn collect_runnable(library: &mut Library<'_>, id: ClassId, out: &mut Vec<ClassI
     }
 }
 
+/// Whether a class has an `experiment` annotation of its own.
 fn has_experiment(class: &ast::Class) -> bool {
     if !matches!(class.body, ClassBody::Long(_) | ClassBody::Short { .. }) {
         return false;
@@ -359,7 +383,7 @@ fn has_experiment(class: &ast::Class) -> bool {
     )
 }
 
-/// Compiles one text held in memory; for tests and examples.
+/// Compiles one text held in memory up to the flat model; for tests and examples.
 pub fn flatten_text(text: &str, model: Option<&str>) -> CompileOutcome<FrontEndResult> {
     let world = bramah_syntax::world::MemoryWorld::single("model.mo", text);
     let request = Request { source: Path::new("model.mo").into(), model: model.map(Into::into), ..Request::default() };

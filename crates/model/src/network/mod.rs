@@ -81,7 +81,8 @@ pub struct Network {
     pub connections: Vec<Connection>,
     /// Sets of equal potentials. Signals that are joined are in these sets too.
     pub potentials: Vec<PotentialSet>,
-    /// Sets of flows, also those of a single flow that an outside connector joins.
+    /// Sets of flows. A flow variable may be in two sets: in one as an inside connector, in one as an outside
+    /// connector.
     pub flows: Vec<FlowSet>,
     /// Joined streams.
     pub streams: Vec<StreamSet>,

@@ -119,8 +119,8 @@ impl VirtualConnectionGraph {
 
     /// Chooses the spanning trees and their roots. Returns the links with the decision about each.
     ///
-    /// The order gives the weights of MLS 9.4.2: branches first, then roots, then connections in their order as far as
-    /// they join two trees without roots colliding, then potential roots by priority.
+    /// The order decides what is kept: branches first, then stated roots, then connections as far as they join two
+    /// trees of which at most one has a root, then potential roots by priority for trees without a root (MLS 9.4.2).
     pub(super) fn span(mut self, instance: &mut Instance<'_, '_>) -> (Vec<OverconstrainedLink>, SpanningForest) {
         let links = std::mem::take(&mut self.links);
         let ends: Vec<(usize, usize)> = links.iter().map(|l| (self.number(l.a), self.number(l.b))).collect();

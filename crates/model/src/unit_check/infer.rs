@@ -1,8 +1,12 @@
 //! Units of all variables: the declared ones, and those that follow from the equations.
 //!
-//! Each relation is worked through bottom-up and then top-down; when that finds the unit of a variable, the relations
-//! it occurs in are worked through again. A relation is looked at a few times at most, so the work grows with the size of
-//! the model.
+//! Enters: a [`FlatModel`]. Leaves: the relations in which units must fit, and what is known about the unit of each
+//! variable. The parent module calls [`relations`], [`UnitInference::declared`], [`UnitInference::infer`] and
+//! [`UnitInference::evaluate`], in this order.
+//!
+//! Each relation is evaluated bottom-up, from variables to the whole, and then worked through top-down, from the whole
+//! to undeclared variables. When that finds the unit of a variable, the relations that contain it are worked through
+//! again. Each relation is visited at most [`MOST_VISITS`] times, so the work is linear in the size of the model.
 
 use super::measure::{PartialUnit, UnitKnowledge};
 use crate::flat::{FlatModel, FlatVariable, ScalarType, Variability, WhenAction};
@@ -13,26 +17,32 @@ use bramah_syntax::diag::Span;
 use rustc_hash::FxHashMap;
 use std::collections::VecDeque;
 
-/// A relation is worked through so often at most.
+/// The most visits of one relation.
 const MOST_VISITS: u8 = 8;
 
-/// One side of a relation.
+/// The left side of a relation.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RelationSide {
+    /// An expression.
     Expr(ExprId),
+    /// A variable whose attribute or assignment the relation is about.
     Var(VarId),
 }
 
-/// Two sides that have the same unit, or one expression to look into.
+/// Two sides that must have the same unit, or one expression whose parts must fit.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct UnitRelation {
+    /// The left side; `None` for a lone expression, such as the condition of an assertion.
     pub lhs: Option<RelationSide>,
+    /// The right side, or the lone expression.
     pub rhs: ExprId,
+    /// Its place in the text.
     pub span: Span,
+    /// The instance that contains it.
     pub instance: u32,
 }
 
-/// All places of a model where units must fit.
+/// All places of a model where units must fit: equations, attributes, assignments in `when`, assertions, in this order.
 pub(super) fn relations(model: &FlatModel) -> Vec<UnitRelation> {
     let mut found = Vec::with_capacity(model.equations.len() + model.variables.len());
     for equation in model.equations.iter().chain(&model.initial_equations) {
@@ -42,6 +52,7 @@ pub(super) fn relations(model: &FlatModel) -> Vec<UnitRelation> {
     for (i, variable) in (0..).zip(&model.variables) {
         let (span, instance) = (variable.origin.span, variable.origin.instance);
         let values = [variable.binding, variable.start, variable.min, variable.max, variable.nominal];
+        // A plain number is in the unit of its variable.
         for rhs in values.into_iter().flatten().filter(|&e| model.exprs.as_num(e).is_none()) {
             found.push(UnitRelation { lhs: Some(RelationSide::Var(VarId(i))), rhs, span, instance });
         }
@@ -65,31 +76,33 @@ pub(super) fn relations(model: &FlatModel) -> Vec<UnitRelation> {
 
 /// What is known about the units of a model.
 pub(super) struct UnitInference<'a> {
+    /// The model.
     pub model: &'a FlatModel,
-    /// By variable.
+    /// By variable: its unit.
     pub variables: Vec<UnitKnowledge>,
-    /// The relation that gave an undeclared variable its unit.
+    /// By undeclared variable whose unit was found: the relation that gave it.
     pub found_in: FxHashMap<VarId, u32>,
-    /// By node, as of the last time that it was worked through.
+    /// By node: its unit as of the last relation that contained it and was evaluated.
     nodes: Vec<UnitKnowledge>,
-    /// The nodes of all relations, each in an order of evaluation.
+    /// The nodes of all relations, one relation after the other, each in an order of evaluation.
     order: Vec<ExprId>,
-    /// Where each relation's nodes begin in `order`, and one more for the end.
+    /// By relation: where its nodes begin in `order`, and one more entry for the end.
     starts: Vec<usize>,
-    /// Variables whose unit the last relation gave.
+    /// Variables whose unit the relation being worked through has given.
     fresh: Vec<VarId>,
 }
 
-/// A unit string that cannot be read, and a variable that has it.
+/// A unit string that cannot be read: a variable that has it, and the error.
 pub(super) type UnreadableUnit = (VarId, UnitError);
 
 impl<'a> UnitInference<'a> {
-    /// The declared units; those that cannot be read are unknown.
+    /// Starts from the declared units. Those that cannot be read are returned and count as unknown.
     pub fn declared(model: &'a FlatModel, relations: &[UnitRelation]) -> (Self, Vec<UnreadableUnit>) {
         let mut cache: FxHashMap<&str, Result<MeasurementUnit, UnitError>> = FxHashMap::default();
         let mut unreadable = Vec::new();
         let mut variables = Vec::with_capacity(model.variables.len());
         for (i, variable) in (0..).zip(&model.variables) {
+            // Models have few different units, so each string is parsed once.
             let mut read = |text: &'a str| {
                 let unit = cache.entry(text).or_insert_with(|| MeasurementUnit::parse(text)).clone();
                 unit.map_err(|error| unreadable.push((VarId(i), error))).ok()
@@ -117,6 +130,7 @@ impl<'a> UnitInference<'a> {
         }
         let uses = self.uses(relations);
         let mut visits = vec![0u8; relations.len()];
+        // A relation is in the queue once at most.
         let mut waiting = vec![true; relations.len()];
         let mut queue: VecDeque<u32> = (0..).take(relations.len()).collect();
         while let Some(next) = queue.pop_front() {
@@ -137,7 +151,7 @@ impl<'a> UnitInference<'a> {
         }
     }
 
-    /// In which relations each undeclared variable occurs.
+    /// The relations in which each undeclared variable occurs.
     fn uses(&self, relations: &[UnitRelation]) -> RelationUses {
         let mut pairs: Vec<(VarId, u32)> = Vec::new();
         let unknown = |v: VarId| matches!(self.variables[v.index()], UnitKnowledge::Unknown);
@@ -159,11 +173,12 @@ impl<'a> UnitInference<'a> {
         RelationUses { pairs }
     }
 
-    /// Where the nodes of a relation are in `order`.
+    /// The positions of the nodes of a relation in `order`.
     fn nodes_of(&self, relation: usize) -> std::ops::Range<usize> {
         self.starts[relation]..self.starts[relation + 1]
     }
 
+    /// Works through a relation: bottom-up, then across its sides, then top-down.
     fn work_through(&mut self, number: usize, relation: &UnitRelation) {
         self.evaluate(number, |_, _| {});
         let (left, right) = (self.side(relation.lhs), self.nodes[relation.rhs.index()]);
@@ -177,13 +192,14 @@ impl<'a> UnitInference<'a> {
         if let Some(quantity) = left.known() {
             self.expect(relation.rhs, quantity);
         }
+        // Reversed order of evaluation: a node comes before its arguments.
         for i in self.nodes_of(number).rev() {
             self.push_down(self.order[i]);
         }
     }
 
-    /// Bottom-up through a relation, by its number: the unit of each node, after `look` has seen the node with those of
-    /// its arguments.
+    /// Evaluates the nodes of a relation bottom-up. `look` sees each node when its arguments have their units, before
+    /// its own unit is set.
     pub fn evaluate(&mut self, relation: usize, mut look: impl FnMut(&Self, ExprId)) {
         for i in self.nodes_of(relation) {
             let e = self.order[i];
@@ -192,12 +208,12 @@ impl<'a> UnitInference<'a> {
         }
     }
 
-    /// The unit of a node that was just worked through.
+    /// The unit of a node of the relation that was evaluated last.
     pub fn of(&self, e: ExprId) -> UnitKnowledge {
         self.nodes[e.index()]
     }
 
-    /// The unit of a side that was just worked through.
+    /// The unit of a side of the relation that was evaluated last.
     pub fn side(&self, side: Option<RelationSide>) -> UnitKnowledge {
         match side {
             Some(RelationSide::Expr(e)) => self.of(e),
@@ -206,6 +222,7 @@ impl<'a> UnitInference<'a> {
         }
     }
 
+    /// The unit of a node from those of its arguments.
     fn combine(&self, e: ExprId) -> UnitKnowledge {
         match self.model.exprs.node(e) {
             ExprNode::Num(bits) => UnitKnowledge::of_number(f64::from_bits(bits)),
@@ -226,6 +243,7 @@ impl<'a> UnitInference<'a> {
         }
     }
 
+    /// The unit of a binary operation.
     fn binary(&self, op: BinaryFunction, a: ExprId, b: ExprId) -> UnitKnowledge {
         let (left, right) = (self.of(a), self.of(b));
         match op {
@@ -236,6 +254,7 @@ impl<'a> UnitInference<'a> {
             BinaryFunction::Min | BinaryFunction::Max => left.join(right),
             BinaryFunction::Pow => match (self.model.exprs.as_num(b), left) {
                 (Some(exponent), _) => left.power(exponent),
+                // A number to a power that varies is a number; of other units nothing is known then.
                 (None, UnitKnowledge::Known(base)) if base.difference(PartialUnit::NUMBER).is_none() => {
                     UnitKnowledge::Number
                 }
@@ -246,19 +265,21 @@ impl<'a> UnitInference<'a> {
         }
     }
 
-    /// A node without a unit of its own gets the one that its place asks for.
+    /// Gives a node without a known unit the one that its place asks for.
     fn expect(&mut self, e: ExprId, quantity: PartialUnit) {
         if matches!(self.nodes[e.index()], UnitKnowledge::Unknown) {
             self.nodes[e.index()] = UnitKnowledge::Known(quantity);
         }
     }
 
+    /// [`Self::expect`] where the unit is known; else nothing.
     fn expect_measure(&mut self, e: ExprId, measure: UnitKnowledge) {
         if let UnitKnowledge::Known(quantity) = measure {
             self.expect(e, quantity);
         }
     }
 
+    /// Gives a variable without a known unit the one that was found, and records it in `fresh`.
     fn assign(&mut self, v: VarId, measure: UnitKnowledge) {
         if matches!((self.variables[v.index()], measure), (UnitKnowledge::Unknown, UnitKnowledge::Known(_))) {
             self.variables[v.index()] = measure;
@@ -266,7 +287,7 @@ impl<'a> UnitInference<'a> {
         }
     }
 
-    /// Top-down: what a node's unit says about its arguments.
+    /// Passes the unit of a node down to its arguments, where the operation determines theirs.
     fn push_down(&mut self, e: ExprId) {
         let node = self.model.exprs.node(e);
         if let ExprNode::Rel(_, a, b) | ExprNode::EventRel(_, a, b) = node {
@@ -309,19 +330,21 @@ impl<'a> UnitInference<'a> {
         }
     }
 
+    /// Passes the unit of either node to the other.
     fn equalize(&mut self, a: ExprId, b: ExprId) {
         let (left, right) = (self.of(a), self.of(b));
         self.expect_measure(a, right);
         self.expect_measure(b, left);
     }
 
+    /// Whether neither term of a sum is a number that may be any quantity.
     fn is_plain_sum(&self, a: ExprId, b: ExprId) -> bool {
         !matches!(self.of(a), UnitKnowledge::Wild) && !matches!(self.of(b), UnitKnowledge::Wild)
     }
 }
 
-/// Variables that declare no unit: whole numbers and truth values count, a parameter that is just a number may stand for
-/// anything, the rest is to be found.
+/// What is known about a variable that declares no unit. Integers, Booleans and enumerations are numbers. A parameter
+/// with a plain number as its value may stand for anything. The units of all others are to be found.
 fn undeclared(model: &FlatModel, variable: &FlatVariable) -> UnitKnowledge {
     let is_number = |e: Option<ExprId>| e.is_none_or(|e| model.exprs.as_num(e).is_some());
     if variable.ty != ScalarType::Real {
@@ -333,7 +356,8 @@ fn undeclared(model: &FlatModel, variable: &FlatVariable) -> UnitKnowledge {
     }
 }
 
-/// A constant of pi stays one; any other parameter may be set to something else.
+/// What is known about a parameter with this value: a multiple of pi may convert angles; any other value may stand for
+/// anything.
 fn parameter(value: f64) -> UnitKnowledge {
     match UnitKnowledge::of_number(value) {
         UnitKnowledge::Circle => UnitKnowledge::Circle,
@@ -341,6 +365,7 @@ fn parameter(value: f64) -> UnitKnowledge {
     }
 }
 
+/// The unit of a function of one argument.
 fn unary(op: UnaryFunction, a: UnitKnowledge) -> UnitKnowledge {
     match op {
         UnaryFunction::Neg | UnaryFunction::Abs | UnaryFunction::Floor => a,
@@ -363,37 +388,40 @@ fn orders(pool: &Exprs, relations: &[UnitRelation]) -> (Vec<ExprId>, Vec<usize>)
             true
         });
         let start = starts[starts.len() - 1];
+        // Arguments have smaller ids than their node.
         order[start..].sort_unstable();
         starts.push(order.len());
     }
     (order, starts)
 }
 
-/// Sorted pairs of variable and relation.
+/// Which relations contain which variables: pairs in ascending order.
 struct RelationUses {
+    /// A variable and a relation that contains it. Pairs may be repeated.
     pairs: Vec<(VarId, u32)>,
 }
 
 impl RelationUses {
+    /// The relations that contain a variable. Binary search.
     fn of(&self, v: VarId) -> impl Iterator<Item = &u32> {
         let from = self.pairs.partition_point(|pair| pair.0 < v);
         self.pairs[from..].iter().take_while(move |pair| pair.0 == v).map(|pair| &pair.1)
     }
 }
 
-/// Whether an argument of this function must be a plain number. Of a logarithm it need not: `log(x) + C` is `log(x/c)`,
-/// and empirical laws are written so.
+/// Whether the argument of a function must be a plain number. That of a logarithm need not be: `log(x) + C` is
+/// `log(x/c)`, and empirical laws are written so.
 pub(super) fn takes_numbers(op: UnaryFunction) -> bool {
     use UnaryFunction::{Acos, Asin, Atan, Cos, Cosh, Exp, Sin, Sinh, Tan, Tanh};
     matches!(op, Sin | Cos | Tan | Asin | Acos | Atan | Sinh | Cosh | Tanh | Exp)
 }
 
-/// The name under which messages print a variable.
+/// The names of variables as messages print them.
 pub(super) fn name(model: &FlatModel) -> impl Fn(VarId) -> String {
     |v| model.variables[v.index()].name.clone()
 }
 
-/// The expression in one short line.
+/// An expression in one short line, cut after 80 characters.
 pub(super) fn text(model: &FlatModel, e: ExprId) -> String {
     let pool: &Exprs = &model.exprs;
     pool.print_short(e, &name(model), 80)

@@ -1,4 +1,11 @@
 //! The unit check: every flat equation, binding, start value and assignment.
+//!
+//! Enters: a [`FlatModel`]. Leaves: warnings; units never stop a model from running. `compile::sort` calls [`check`].
+//!
+//! `measure` says what is known about the unit of an expression and how operators combine it. `infer` lists the
+//! relations in which units must fit, and finds the units of variables that declare none. This file compares both sides
+//! of each relation and the arguments of each operation, and writes the messages. The check is silent where a unit is
+//! not known.
 
 mod infer;
 mod measure;
@@ -11,12 +18,14 @@ use infer::{RelationSide, UnitInference, UnitRelation};
 use measure::{PartialUnit, UnitDifference, UnitKnowledge};
 use rustc_hash::FxHashSet;
 
-/// So many terms are listed in a message.
+/// The most terms that a message lists.
 const MOST_TERMS: usize = 8;
 
-/// Warnings where units do not fit, in the order of the model's equations: W232 for units that cannot be read, W230 for
-/// sides of different dimension, W231 for sides of one dimension in different units. A place in the text is reported once,
-/// however many instances its class has. What is not known is not reported.
+/// Warnings where units do not fit, in the order of the model's equations.
+///
+/// W232 is for units that cannot be read, W230 for sides of different dimension, W231 for sides of one dimension in
+/// different units. A place in the text is reported once, however many instances its class has. What is not known is
+/// not reported.
 pub fn check(model: &FlatModel) -> Vec<Diagnostic> {
     let relations = infer::relations(model);
     let (mut units, unreadable) = UnitInference::declared(model, &relations);
@@ -27,6 +36,8 @@ pub fn check(model: &FlatModel) -> Vec<Diagnostic> {
     let mut mismatches = Vec::new();
     for (number, relation) in relations.iter().enumerate() {
         mismatches.clear();
+        // Nodes are compared while they are evaluated: a node shared by relations may get another unit from the next
+        // one.
         units.evaluate(number, |units, e| mismatches.extend(inner_mismatch(units, e)));
         mismatches.extend(outer_mismatch(&units, relation));
         for mismatch in &mismatches {
@@ -40,28 +51,36 @@ pub fn check(model: &FlatModel) -> Vec<Diagnostic> {
     found
 }
 
-/// Two quantities that should have the same unit.
+/// Two quantities that should have the same unit and do not.
 struct UnitMismatch {
+    /// How they differ.
     difference: UnitDifference,
-    /// The node inside the relation at which they meet; `None` for the relation itself.
+    /// The node inside the relation at which they meet; `None` for the two sides of the relation itself.
     part: Option<ExprId>,
+    /// The unit of the first one.
     left: PartialUnit,
+    /// The unit of the second one.
     right: PartialUnit,
 }
 
+/// Compares two units. `None` where they agree or one of them is not known.
 fn mismatch(part: Option<ExprId>, left: UnitKnowledge, right: UnitKnowledge) -> Option<UnitMismatch> {
     let (left, right) = (left.known()?, right.known()?);
     let difference = left.difference(right)?;
     Some(UnitMismatch { difference, part, left, right })
 }
 
+/// Compares the sides of a relation, after its nodes have been evaluated.
 fn outer_mismatch(units: &UnitInference, relation: &UnitRelation) -> Option<UnitMismatch> {
     mismatch(None, units.side(relation.lhs), units.of(relation.rhs))
 }
 
+/// Compares the arguments of a node: terms of a sum, sides of a comparison, branches of an `if`, and arguments that
+/// must be numbers. `None` for other nodes.
 fn inner_mismatch(units: &UnitInference, e: ExprId) -> Option<UnitMismatch> {
     let number = UnitKnowledge::Known(PartialUnit::NUMBER);
     let (left, right) = match units.model.exprs.node(e) {
+        // Both sides of a comparison are in one unit.
         ExprNode::Rel(_, a, b) | ExprNode::EventRel(_, a, b) => (units.of(a), units.of(b)),
         ExprNode::Binary(BinaryFunction::Sub | BinaryFunction::Add, a, b) => {
             // A temperature and a difference of temperatures may be added.
@@ -79,6 +98,7 @@ fn inner_mismatch(units: &UnitInference, e: ExprId) -> Option<UnitMismatch> {
     mismatch(Some(e), left, right)
 }
 
+/// The warning about a mismatch: what meets where, in which units, and the variables that take part.
 fn report(
     units: &UnitInference,
     relations: &[UnitRelation],
@@ -109,12 +129,14 @@ fn report(
         }
     }
     match mismatch.difference {
+        // Only units of one dimension can be converted.
         UnitDifference::Factor => diagnostic.help(conversion(mismatch)),
         UnitDifference::Dimension => diagnostic,
     }
 }
 
-/// What is compared, when it is an expression.
+/// The two sides that are compared. `None` for a side that is no expression, such as the plain number that a function
+/// wants.
 fn meeting_places(
     units: &UnitInference,
     relation: &UnitRelation,
@@ -132,7 +154,7 @@ fn meeting_places(
     }
 }
 
-/// A unit as the user wrote it when the expression is a variable that declares it.
+/// A unit as the user wrote it if the side is a variable that declares it; else in SI base units.
 fn named(units: &UnitInference, side: RelationSide, quantity: PartialUnit) -> String {
     let variable = match side {
         RelationSide::Var(v) => Some(v),
@@ -145,7 +167,7 @@ fn named(units: &UnitInference, side: RelationSide, quantity: PartialUnit) -> St
     written.filter(|text| !text.is_empty()).map_or_else(|| quantity.to_string(), String::from)
 }
 
-/// The message, and what stands under the place.
+/// The message, and the label at the place.
 fn words(
     model: &FlatModel,
     relation: &UnitRelation,
@@ -186,7 +208,8 @@ fn words(
     }
 }
 
-/// The variables of an expression with their units, and where the unit of an undeclared one was found.
+/// The variables of a side with their units, one line each, and the place from which the unit of an undeclared one
+/// follows. At most [`MOST_TERMS`] lines; variables without a known unit are left out.
 fn terms(
     units: &UnitInference,
     relations: &[UnitRelation],
@@ -198,6 +221,7 @@ fn terms(
     if let RelationSide::Expr(e) = side {
         roots.push(e);
     }
+    // For a mismatch of the relation itself both sides matter.
     if let (Some(RelationSide::Expr(lhs)), true) = (relation.lhs, roots == [relation.rhs]) {
         roots.push(lhs);
     }
@@ -223,6 +247,7 @@ fn terms(
     lines
 }
 
+/// Advice how to convert: by the offset of a temperature, or by the factor between the units.
 fn conversion(mismatch: &UnitMismatch) -> String {
     let (left, right) = (mismatch.left, mismatch.right);
     let shift = right.offset - left.offset;
@@ -233,6 +258,7 @@ fn conversion(mismatch: &UnitMismatch) -> String {
     format!("convert one side, or declare both in the same unit: the right one is {factor} of the left one")
 }
 
+/// The warning about one unit string.
 fn unreadable_units(model: &FlatModel, unreadable: &[infer::UnreadableUnit]) -> Vec<Diagnostic> {
     let mut seen = FxHashSet::default();
     let mut found = Vec::new();
@@ -254,7 +280,7 @@ fn unreadable_unit(model: &FlatModel, v: VarId, error: &UnitError) -> Diagnostic
         .help("units are written as in `N.m`, `m3/s`, `J/(kg.K)`, `l/min`, `rev/min`, `degC`")
 }
 
-/// A `displayUnit` of another dimension than the `unit`.
+/// Warnings for a `displayUnit` of another dimension than the `unit`, once for each pair of units.
 fn display_units(model: &FlatModel) -> Vec<Diagnostic> {
     let mut seen = FxHashSet::default();
     let mut found = Vec::new();

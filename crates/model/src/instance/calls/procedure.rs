@@ -40,6 +40,14 @@ pub struct ProcedureDraft {
     captures: Option<Vec<ExprId>>,
 }
 
+/// What a loop variable is at each value of the counter.
+enum LoopValues {
+    /// The counter itself, as a value of this type.
+    Counter(ScalarType),
+    /// The element of an array at the counter.
+    Elements(ModelicaValue),
+}
+
 impl<'a> ProcedureTranslator<'_, 'a, '_> {
     /// Calls a function through its procedure, which is translated at the first call. `None` after a message.
     ///
@@ -491,7 +499,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
             }
             if !part.subscripts.is_empty() {
                 // A symbolic subscript ends the walk: it is stored through an offset, not by naming slots.
-                if let Some(done) = self.store_element(&place, part, r, k, &value, view, span)? {
+                if let Some(done) = self.store_element(&place, (r, k), &value, view, span)? {
                     return Some(done);
                 }
                 place = self.instance.evaluator().subscript(place, &part.subscripts, view, span)?;
@@ -515,22 +523,20 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
     /// Translates `a[i] := value` with an index that is known only during the run.
     ///
     /// `Some(None)` if all subscripts are known or some are missing: then it is no such assignment.
-    /// `None` after a message. `k` is the index of `part` in the reference.
+    /// `None` after a message. `k` is the index of the part of the reference that has the subscripts.
     ///
     /// Only a scalar element of an array of scalars can be stored this way, with no field after the subscripts.
     /// Every other form with a symbolic subscript is reported as unsupported.
-    #[allow(clippy::too_many_arguments, reason = "the pieces of one assignment")]
     fn store_element(
         &mut self,
         place: &ModelicaValue,
-        part: &'a ast::ReferencePart,
-        r: &ComponentReference,
-        k: usize,
+        (r, k): (&'a ComponentReference, usize),
         value: &ModelicaValue,
         view: LookupContext,
         span: Span,
     ) -> Option<Option<()>> {
         let ModelicaValue::Array { dims, elements } = place else { return Some(None) };
+        let part = &r.parts[k];
         if part.subscripts.len() != dims.len() {
             return Some(None);
         }
@@ -668,31 +674,29 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                         first.name.span,
                     );
                 };
-                self.loop_over(first.name.name, ty, (from, step, to), None, rest, body, view)
+                self.loop_over((first.name.name, LoopValues::Counter(ty)), (from, step, to), rest, body, view)
             }
             _ => {
                 let values = self.instance.evaluator().iterate(first, LoopBody::Statements(body), view)?;
                 let n = values.len();
-                let Some(ty) = values.first().and_then(ModelicaValue::element_type) else { return Some(()) };
-                let array = ModelicaValue::array(vec![n], values);
+                if values.is_empty() {
+                    return Some(());
+                }
+                let elements = LoopValues::Elements(ModelicaValue::array(vec![n], values));
                 let bounds = (SlotExpr::Num(1.0), SlotExpr::Num(1.0), SlotExpr::Num(n as f64));
-                self.loop_over(first.name.name, ty, bounds, Some(array), rest, body, view)
+                self.loop_over((first.name.name, elements), bounds, rest, body, view)
             }
         }
     }
 
     /// Emits a loop over the slot of a counter. `None` as above.
     ///
-    /// `bounds` are the first value, the step and the last value of the counter.
-    /// With `array`, the loop variable is the element at the counter, otherwise the counter itself, with the type `ty`.
+    /// The counter goes `from` a value by a step `to` its last value.
     /// `rest` are the remaining iterators, which are translated inside.
-    #[allow(clippy::too_many_arguments, reason = "the pieces of one loop")]
     fn loop_over(
         &mut self,
-        name: Symbol,
-        ty: ScalarType,
-        bounds: (SlotExpr, SlotExpr, SlotExpr),
-        array: Option<ModelicaValue>,
+        (name, values): (Symbol, LoopValues),
+        (from, step, to): (SlotExpr, SlotExpr, SlotExpr),
         rest: &'a [ast::ForIndex],
         body: &'a [Statement],
         view: LookupContext,
@@ -701,14 +705,13 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         let (index, _) = counter.scalar()?;
         let slot = self.slot(index)?;
         // The loop variable is a slot or an element; it is visible in the body only.
-        let value = match &array {
-            None => ModelicaValue::Scalar(index, ty),
-            Some(a) => self.indexed_slot(a.dims(), a.elements(), &[SubscriptValue::Symbolic(index)])?,
+        let value = match &values {
+            LoopValues::Counter(ty) => ModelicaValue::Scalar(index, *ty),
+            LoopValues::Elements(a) => self.indexed_slot(a.dims(), a.elements(), &[SubscriptValue::Symbolic(index)])?,
         };
         self.instance.eval.locals.push((name, value));
         let body = self.nested(|s| s.procedure_for(rest, body, view));
         self.instance.eval.locals.pop();
-        let (from, step, to) = bounds;
         self.emit(SlotStatement::For { slot, from, step, to, body: body? });
         Some(())
     }
