@@ -72,12 +72,12 @@
 //! | `gap` | the diagnosis: where model and machine differ |
 //! | `analysis` | linear models, identification, sweeps, studies, experiment files |
 //!
-//! Without any, circuits are compiled and run.
+//! Without any feature, circuits can be compiled and run.
 //!
-//! # What is promised
+//! # Stability
 //!
-//! What stands on this page and what it names. The stages of the compiler and solver are reachable in [`internals`], for
-//! tools that look inside; they change without notice.
+//! Stable are the items on this page and those that they name. The stages of compiler and solver are reachable in
+//! [`internals`] for tools that look inside. They change without notice.
 
 #![deny(missing_docs)]
 
@@ -113,22 +113,23 @@ pub use bramah_analysis::{
 #[doc(inline)]
 pub use bramah_gap::{Budget, DiagnoseOptions, Diagnosis, Stage, Verdict, diagnose, diagnose_as};
 
-/// Linear models, as [`Simulation::linearize`] gives them.
+/// Linear models, as [`Simulation::linearize`] returns them: matrices, poles, zeros, responses and files.
 #[cfg(feature = "analysis")]
 pub mod linear {
     pub use bramah_analysis::linear::{Pole, Quantity, StateSpace, csv, mat, modelica, poles, response, words, zeros};
 }
 
-/// What a [`Verdict`] is made of.
+/// The [`Verdict`] of a diagnosis and the types of its fields.
 #[cfg(feature = "gap")]
 pub mod verdict {
     pub use bramah_gap::verdict::*;
 }
 
-/// The stages of compiler, solver and diagnosis, in the order in which a circuit passes through them. No promise: they
-/// change without notice.
+/// The stages of compiler, solver and diagnosis, in the order in which a circuit passes through them.
+///
+/// They are not stable and change without notice.
 pub mod internals {
-    /// The command.
+    /// The command line.
     #[cfg(feature = "cli")]
     pub mod cli {
         pub use crate::cli::*;
@@ -148,7 +149,7 @@ pub mod internals {
         bramah_plot as plot, bramah_solve as solve, bramah_syntax as syntax,
     };
 
-    /// From a request to a model ready to run.
+    /// Compilation: from a request to a model ready to run.
     pub mod compile {
         pub use bramah_circuit::compiled::*;
         pub use bramah_model::compile::*;

@@ -1,4 +1,7 @@
-//! `bramah check`
+//! `bramah check`: compiles a circuit without running it, and optionally writes what a stage makes of it.
+//!
+//! A model enters. A one-line summary or diagnostics leave; with `--emit` also the network, the flat model or the
+//! sorted equations. With `--all`, every runnable model of a package is checked and gets one row.
 
 use clap::{Args, ValueEnum};
 
@@ -52,7 +55,9 @@ enum EmitFormat {
     Blt,
 }
 
+/// Runs the subcommand. `Err` with a model error gives exit code 1.
 pub(super) fn run(args: &CheckArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
+    // Checked before the model is compiled.
     if let Some(file) = &args.output_file {
         super::files::ending(std::path::Path::new(file), "this", endings(args.emit))?;
     }
@@ -60,7 +65,8 @@ pub(super) fn run(args: &CheckArgs, messages: &mut MessageReporter) -> Result<Co
     if args.all {
         return check_all(&experiment, messages);
     }
-    // The network can be looked at even when the equations do not fit together.
+    // Early stages are written even when later ones fail, so that the user can look at an incomplete model. Their
+    // messages are printed by `sort` below, which runs the same stages again.
     match args.emit {
         Some(EmitFormat::Network) => {
             write(args, &network_list(&messages.quietly(|quiet| model::graph(&experiment, quiet))?.1))?
@@ -81,7 +87,10 @@ pub(super) fn run(args: &CheckArgs, messages: &mut MessageReporter) -> Result<Co
     Ok(CommandStatus::Fine)
 }
 
-/// A row for each model: `ok` with its size, or the first error.
+/// Checks all runnable models. Prints one row for each to stdout: `ok` with its size, or the code and text of the first
+/// error.
+///
+/// Returns `Wrong` when any of them fails.
 fn check_all(
     experiment: &ExperimentSpecification,
     messages: &mut MessageReporter,
@@ -91,6 +100,7 @@ fn check_all(
     let mut wrong = 0;
     for name in &names {
         let one = ExperimentSpecification { model: Some(name.clone()), ..experiment.clone() };
+        // Details of each model would bury the rows; the user can check one model alone.
         let row = match model::sort(&one, &mut MessageReporter::silent()) {
             Ok((flat, _, dae)) => {
                 let (equations, states) = (flat.equations.len(), dae.states.len());
@@ -98,6 +108,7 @@ fn check_all(
             }
             Err(failure) => {
                 wrong += 1;
+                // Warnings may stand before the error.
                 let first = failure.diagnostics.iter().find(|d| d.is_error()).or(failure.diagnostics.first());
                 first.map_or_else(|| "failed".into(), |d| format!("{}   {}", d.code, d.message))
             }
@@ -108,15 +119,17 @@ fn check_all(
     Ok(if wrong == 0 { CommandStatus::Fine } else { CommandStatus::Wrong })
 }
 
+/// `1 state`, `2 states`.
 fn count(n: usize, what: &str) -> String {
     format!("{n} {what}{}", if n == 1 { "" } else { "s" })
 }
 
+/// Writes a text to the file of `--output-file`, or to stdout.
 fn write(args: &CheckArgs, text: &str) -> Result<(), CommandFailure> {
     write_text(args.output_file.as_deref().unwrap_or("-"), text)
 }
 
-/// A picture may also be a PNG.
+/// Writes the network as SVG, or as PNG when the file's name ends in `.png`.
 fn write_picture(args: &CheckArgs, (class, graph): &(String, ComponentGraph)) -> Result<(), CommandFailure> {
     let text = network::write(graph, class);
     match &args.output_file {
@@ -128,7 +141,7 @@ fn write_picture(args: &CheckArgs, (class, graph): &(String, ComponentGraph)) ->
     }
 }
 
-/// What the file's name may end in.
+/// The endings that a file for this stage may have.
 fn endings(emit: Option<EmitFormat>) -> &'static [&'static str] {
     match emit {
         Some(EmitFormat::Svg) => &["svg", "png"],
@@ -137,7 +150,7 @@ fn endings(emit: Option<EmitFormat>) -> &'static [&'static str] {
     }
 }
 
-/// One line a component, then one line a connection.
+/// The network as text: one line for each component, then one for each connection.
 fn network_list(graph: &ComponentGraph) -> String {
     let mut out = String::new();
     for component in graph.node_weights() {
@@ -145,6 +158,7 @@ fn network_list(graph: &ComponentGraph) -> String {
     }
     for edge in graph.edge_indices() {
         let Some((a, b)) = graph.edge_endpoints(edge) else { continue };
+        // The model's own ports belong to a component without name; a component that is its own port has no port name.
         let end = |n: petgraph::graph::NodeIndex, port: &str| match (graph[n].name.as_str(), port) {
             ("", port) => port.to_owned(),
             (name, "") => name.to_owned(),
@@ -156,8 +170,9 @@ fn network_list(graph: &ComponentGraph) -> String {
     out
 }
 
-/// `ok: Press, 120 equations, 3 states (line.p, ...), largest loop 4 (torn to 1)`
+/// The summary line, such as `ok: Press, 120 equations, 3 states (line.p, ...), largest loop 4 (torn to 1)`.
 fn summary(flat: &FlatModel, dae: &Dae) -> String {
+    // Four names show which kind of states there are without filling the terminal.
     let names: Vec<&str> = dae.states.iter().take(4).map(|v| dae.variables[v.index()].name.as_str()).collect();
     let more = if dae.states.len() > 4 { ", ..." } else { "" };
     let states = match dae.states.len() {
@@ -167,6 +182,7 @@ fn summary(flat: &FlatModel, dae: &Dae) -> String {
     };
     let equations = flat.equations.len();
     let largest = dae.continuous.iter().filter_map(|b| match b {
+        // Size of the loop before and after tearing.
         BltBlock::Loop(l) => Some((l.inner.len() + l.residuals.len(), l.tearing.len())),
         _ => None,
     });

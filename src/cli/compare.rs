@@ -1,4 +1,7 @@
-//! `bramah compare`
+//! `bramah compare`: compares a result with a reference, signal by signal.
+//!
+//! Two files enter. A table or JSON on stdout and an optional picture leave. Around each reference signal lies a tube
+//! of the given height and width; a signal of the result passes when it stays inside.
 
 use std::path::PathBuf;
 
@@ -75,6 +78,7 @@ enum TableFormat {
     Json,
 }
 
+/// Parses an argument that must not be negative. `Err` is the text that clap shows.
 fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(v) if v >= 0.0 && v.is_finite() => Ok(v),
@@ -82,6 +86,7 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Runs the subcommand. Returns `Wrong` (exit code 1) when a signal leaves its tube.
 pub(super) fn run(args: &CompareArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let times = match args.time_column.as_slice() {
         [] => [None, None],
@@ -96,10 +101,12 @@ pub(super) fn run(args: &CompareArgs, messages: &mut MessageReporter) -> Result<
     let mut result = data::result(&args.result, times[1], messages)?;
     name_units(&mut reference, &args.unit)?;
     name_units(&mut result, &args.unit)?;
+    // Both files are cut to the window, so that ranges and tubes refer to it alone.
     let window = args.start_time.unwrap_or(f64::NEG_INFINITY)..=args.stop_time.unwrap_or(f64::INFINITY);
     reference.keep(window.clone());
     result.keep(window);
     let pairs = pairs(args, &mut reference, &result)?;
+    // After the pairs: only signals that are compared matter.
     warn_of_units(&reference, &result, &pairs, messages);
     let tolerance =
         TubeTolerance { relative: args.tolerance, absolute: args.absolute_tolerance, time: args.time_tolerance };
@@ -121,7 +128,7 @@ pub(super) fn run(args: &CompareArgs, messages: &mut MessageReporter) -> Result<
     Ok(if comparison.within { CommandStatus::Fine } else { CommandStatus::Wrong })
 }
 
-/// `--unit` is for signals without a unit: what a file says of its own stays.
+/// Applies `--unit` to signals without a unit. A unit in the file takes precedence.
 fn name_units(trajectory: &mut Trajectory, assignments: &[String]) -> Result<(), CommandFailure> {
     let own: Vec<String> = trajectory.signals.iter().map(|s| s.unit.clone()).collect();
     data::apply_units(trajectory, assignments)?;
@@ -131,7 +138,7 @@ fn name_units(trajectory: &mut Trajectory, assignments: &[String]) -> Result<(),
     Ok(())
 }
 
-/// Numbers with a unit beside numbers without one are compared as they stand.
+/// Warns when only one signal of a pair has a unit. The numbers are then compared without conversion.
 fn warn_of_units(reference: &Trajectory, result: &Trajectory, pairs: &[(usize, usize)], messages: &MessageReporter) {
     for (a, b) in pairs.iter().map(|&(a, b)| (&reference.signals[a], &result.signals[b])) {
         if a.kind == Kind::Real && a.unit.is_empty() != b.unit.is_empty() {
@@ -145,8 +152,10 @@ fn warn_of_units(reference: &Trajectory, result: &Trajectory, pairs: &[(usize, u
     }
 }
 
-/// Indices in reference and result of what is to be compared. Units given in `--map` are written into the reference,
-/// and its values converted to the result's unit.
+/// Indices of the signals to compare, in the reference and in the result.
+///
+/// The pairs of `--map` come first, then signals of equal name. Units given in `--map` are stored in the reference, and
+/// its values are converted to the units of the result. `Err`: a signal is missing, or there is no pair.
 fn pairs(
     args: &CompareArgs,
     reference: &mut Trajectory,
@@ -157,6 +166,7 @@ fn pairs(
         pairs.push(mapped(&entry, args, reference, result)?);
     }
     let globs = GlobPatterns::new(&args.variables);
+    // With `--map` alone, only the mapped pairs are compared.
     if args.map.is_empty() || !globs.is_empty() {
         for (a, signal) in reference.signals.iter().enumerate() {
             let wanted = globs.is_empty() || globs.matches(&signal.name);
@@ -177,6 +187,7 @@ fn pairs(
     Ok(pairs)
 }
 
+/// One entry of `--map`, `B=A` or `B=A[UNIT]`. Stores the unit in the reference.
 fn mapped(
     entry: &str,
     args: &CompareArgs,
@@ -191,6 +202,7 @@ fn mapped(
     };
     let b = result.index(ours.trim()).ok_or_else(|| missing(ours.trim(), &args.result, result))?;
     let theirs = theirs.trim();
+    // A column whose name itself ends in brackets is taken as it stands.
     if let Some(a) = reference.index(theirs) {
         return Ok((a, b));
     }
@@ -203,14 +215,17 @@ fn mapped(
     Ok((a, b))
 }
 
-/// Converts a column to a unit where both units are known and of the same kind.
+/// Converts a column of the reference to `unit`. Nothing happens when a unit is unknown or the units are of different
+/// kinds.
 fn harmonise(trajectory: &mut Trajectory, index: usize, unit: &str) {
     let signal = &mut trajectory.signals[index];
     if unit.is_empty() || signal.unit.is_empty() || signal.unit == unit {
         return;
     }
     let previous = std::mem::replace(&mut signal.display_unit, unit.to_owned());
+    // The conversion for pictures is used; the display unit serves as its target and is restored below.
     let values = shown_values(signal, &trajectory.columns[index]);
+    // Unchanged values mean that no conversion was possible, so the unit must stay too.
     if values != trajectory.columns[index] {
         trajectory.columns[index] = values;
         signal.unit = unit.to_owned();
@@ -218,6 +233,7 @@ fn harmonise(trajectory: &mut Trajectory, index: usize, unit: &str) {
     signal.display_unit = previous;
 }
 
+/// The failure for a signal that a file does not have, with a similar name when there is one.
 fn missing(name: &str, path: &std::path::Path, trajectory: &Trajectory) -> CommandFailure {
     let diagnostic = Diagnostic::new(Code::BadMap, format!("`{}` has no signal `{name}`", path.display()));
     match nearest(name, trajectory.signals.iter().map(|s| s.name.as_str())) {
@@ -227,7 +243,7 @@ fn missing(name: &str, path: &std::path::Path, trajectory: &Trajectory) -> Comma
     .into()
 }
 
-/// The numbers in columns for people.
+/// The comparison as an aligned text table.
 fn table(comparison: &TrajectoryComparison) -> String {
     let head = ["signal", "unit", "rmse", "normalised", "maximum", "at s", "delay s", "outside", "verdict"];
     let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
@@ -237,6 +253,7 @@ fn table(comparison: &TrajectoryComparison) -> String {
     let mut out = String::new();
     for row in rows {
         let cells = row.iter().zip(&widths).enumerate().map(|(i, (cell, &width))| {
+            // Names, units and verdicts are aligned left, numbers right.
             let left = i < 2 || i + 1 == head.len();
             if left { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
         });
@@ -246,6 +263,7 @@ fn table(comparison: &TrajectoryComparison) -> String {
     out
 }
 
+/// The cells of one signal, in the order of the head. Missing numbers are `-`.
 fn row(s: &SignalComparison) -> Vec<String> {
     let shown = |v: Option<f64>| v.map_or("-".to_owned(), |v| number::rounded(v, 4));
     let name = match &s.other {
@@ -272,7 +290,7 @@ fn row(s: &SignalComparison) -> Vec<String> {
     ]
 }
 
-/// One panel a signal: the reference with its tube, and the result.
+/// A figure with one panel for each signal: the reference with its tube, and the result dashed.
 fn picture(
     comparison: &TrajectoryComparison,
     reference: &Trajectory,

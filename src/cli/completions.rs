@@ -1,4 +1,4 @@
-//! `bramah completions`
+//! `bramah completions`: prints a completion script for a shell, generated from the definitions of the arguments.
 
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
@@ -17,6 +17,7 @@ pub(super) struct CompletionsArgs {
     shell: Shell,
 }
 
+/// Prints the script to stdout.
 pub(super) fn run(args: &CompletionsArgs) -> Result<CommandStatus, CommandFailure> {
     let mut bytes = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "bramah", &mut bytes);

@@ -1,4 +1,6 @@
-//! Results and recordings read from files, whatever their format.
+//! Reads results and recordings from files of any supported format.
+//!
+//! Paths enter; texts or trajectories leave. Used by `plot`, `compare` and the inputs of `simulate`.
 
 use std::path::Path;
 
@@ -10,14 +12,19 @@ use bramah_results::Trajectory;
 use bramah_results::formats::{self, FORMATS, ResultFile};
 use bramah_syntax::diag::{Code, FileId};
 
-/// Reads a data file as text; letters of old encodings in remarks and units do no harm.
+/// Adds a data file to the sources as text. Bytes that are not UTF-8 are replaced, since remarks and units of old
+/// programs often contain them.
+///
+/// `Err`: the file cannot be read.
 pub(super) fn text(path: &Path, messages: &mut MessageReporter) -> Result<FileId, CommandFailure> {
     let bytes = std::fs::read(path).map_err(|e| access(path, "read", &e))?;
     let text = String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned());
     Ok(messages.sources.add(path.display().to_string(), text))
 }
 
-/// Reads a result or a recording with all its signals, in the format that its ending names, else as CSV.
+/// Reads a result or recording with all its signals. The ending names the format; without a known ending it is CSV.
+///
+/// `time_column` is used by CSV and Parquet; `None` for the usual one.
 pub(super) fn result(
     path: &Path,
     time_column: Option<&str>,
@@ -31,11 +38,15 @@ pub(super) fn result(
     read.value.ok_or(CommandFailure { diagnostics: read.diagnostics })
 }
 
-/// `--unit 'p_*=Pa:bar'`: units for signals of files that carry none.
+/// Applies assignments such as `p_*=Pa:bar`: the unit of the signals and, after the colon, the unit in which they are
+/// shown.
+///
+/// `Err`: an assignment is not of this form, a unit is unknown, or the two units are of different kinds.
 pub(super) fn apply_units(trajectory: &mut Trajectory, assignments: &[String]) -> Result<(), CommandFailure> {
     for assignment in assignments {
         let wrong = |why: String| CommandFailure::new(Code::BadArgument, format!("`--unit {assignment}`: {why}"));
         let (pattern, units) =
+            // Split at the last `=`, because a pattern may contain one and a unit never does.
             assignment.rsplit_once('=').ok_or_else(|| wrong("NAME=UNIT or NAME=UNIT:SHOWN is expected".to_owned()))?;
         let (unit, shown) = units.split_once(':').unwrap_or((units, ""));
         let parse = |text: &str| MeasurementUnit::parse(text).map_err(|e| wrong(e.to_string()));

@@ -1,4 +1,7 @@
-//! What a shipped class offers to those who use it, as text: ports, parameters, members of a package.
+//! Describes a class of the shipped library as text: ports, parameters, members of a package.
+//!
+//! A class name enters, a page of text leaves. `bramah explain` calls it. Only the syntax trees are read; nothing is
+//! instantiated.
 
 use bramah_model::resolve::names::{self, MemberComponent};
 use bramah_model::resolve::{ClassId, Library, SyntaxArena};
@@ -7,10 +10,10 @@ use bramah_syntax::ast::{ClassKind, VariabilityPrefix};
 use bramah_syntax::world::World;
 use std::fmt::Write;
 
-/// The packages to begin with.
+/// The packages of the library that are searched and suggested.
 const PACKAGES: [&str; 7] = ["Hydraulic", "Oil", "Pneumatic", "Mechanical", "Electrical", "Thermal", "Signal"];
 
-/// A page about a class that ships, `None` where there is none of this name.
+/// The page about a shipped class. `None`: there is no class of this name.
 pub(super) fn describe(name: &str) -> Option<String> {
     with_library(|library| {
         let id = library.find(name)?;
@@ -24,7 +27,7 @@ pub(super) fn describe(name: &str) -> Option<String> {
     })
 }
 
-/// The classes of the library whose name resembles a word, or else its packages.
+/// Names of classes that contain the last part of `name`, separated by commas; the packages when there are none.
 pub(super) fn resembling(name: &str) -> String {
     with_library(|library| {
         let last = name.rsplit('.').next().unwrap_or_default().to_lowercase();
@@ -39,16 +42,19 @@ pub(super) fn resembling(name: &str) -> String {
     .join(", ")
 }
 
+/// Calls `act` with a library of the shipped packages. Files are parsed as their classes are asked for.
 fn with_library<T>(act: impl FnOnce(&mut Library<'_>) -> T) -> T {
     let (trees, shipped) = (SyntaxArena::new(), ShippedWorld);
     let roots = ShippedWorld::roots().map(|root| (&shipped as &dyn World, root)).into();
     act(&mut Library::new(&trees, roots))
 }
 
+/// Collects classes below `id` whose own name contains `word`.
 fn search(library: &mut Library<'_>, id: ClassId, word: &str, found: &mut Vec<String>) {
     for child in children(library, id) {
         let name = library.full_name(child);
         let own = name.rsplit('.').next().unwrap_or_default().to_lowercase();
+        // Words of one or two letters match nearly everything. Examples are models, not components to use.
         if !name.contains(".Examples") && word.len() > 2 && own.contains(word) {
             found.push(name);
         }
@@ -56,11 +62,12 @@ fn search(library: &mut Library<'_>, id: ClassId, word: &str, found: &mut Vec<St
     }
 }
 
-/// Classes in a package, those of its own text first.
+/// The classes in a package, those of its own file first. Other classes count as having none.
 fn children(library: &mut Library<'_>, id: ClassId) -> Vec<ClassId> {
     if library.class(id).kind == ClassKind::Package { names::classes(library, id) } else { Vec::new() }
 }
 
+/// Adds the members of a package to the page, a line each.
 fn members(library: &mut Library<'_>, id: ClassId, page: &mut String) {
     let rows = children(library, id).into_iter().map(|child| {
         let class = library.class(child);
@@ -71,7 +78,7 @@ fn members(library: &mut Library<'_>, id: ClassId, page: &mut String) {
     page.push_str("\n`bramah explain CLASS` shows ports and parameters of one of them.\n");
 }
 
-/// Ports, parameters and exchangeable parts, inherited ones too.
+/// Adds public ports, parameters and replaceable parts to the page, inherited ones included.
 fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
     let (mut ports, mut parameters, mut parts) = (Vec::new(), Vec::new(), Vec::new());
     for member in names::members(library, id).into_iter().filter(|m| !m.protected) {
@@ -80,6 +87,7 @@ fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
         let class = c.class.dotted();
         if c.prefix.variability == Some(VariabilityPrefix::Parameter) {
             parameters.push([c.name.name.as_str().to_owned(), value(library, member), said]);
+        // Connectors of the library lie in packages named `Interfaces`. This spares resolving each type.
         } else if class.contains("Interfaces.") {
             let when = c.condition.as_ref().map(|e| format!(" if {}", library.sources.text(e.span)));
             ports.push([c.name.name.as_str().to_owned(), class + &when.unwrap_or_default(), said]);
@@ -95,7 +103,7 @@ fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
     }
 }
 
-/// `Area = 1e-6 m2, 1e-12 to 10`: type, default, unit and range as far as they are given.
+/// Type, default, unit and range of a parameter as far as they are declared: `Area = 1e-6 m2, 1e-12 to 10`.
 fn value<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> String {
     let c = member.component;
     let mut text = c.class.parts.last().map_or("", |p| p.name.as_str()).to_owned();
@@ -107,6 +115,7 @@ fn value<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> String {
     if let Some(e) = c.modification.as_ref().and_then(|m| m.value.as_ref()) {
         let _ = write!(text, " = {}", library.sources.text(e.span));
     }
+    // The unit `1` marks a number without dimension and tells the reader nothing.
     let _ = write!(text, "{}", unit.filter(|u| u != "1").map_or(String::new(), |u| format!(" {u}")));
     match (min, max) {
         (Some(min), Some(max)) => text + &format!(", {min} to {max}"),
@@ -116,7 +125,9 @@ fn value<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> String {
     }
 }
 
+/// Adds rows as aligned columns.
 fn table(page: &mut String, rows: &[[String; 3]]) {
+    // A single long cell must not push the other columns off the terminal.
     let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0).min(40);
     let (first, second) = (width(0), width(1));
     for [name, what, said] in rows {

@@ -1,4 +1,6 @@
-//! `bramah explain`
+//! `bramah explain`: prints the page of a message's code, or the description of a library class.
+//!
+//! The pages of `docs/errors` are embedded in the binary.
 
 use clap::Args;
 use include_dir::{Dir, include_dir};
@@ -7,7 +9,7 @@ use super::describe::{describe, resembling};
 use super::{CommandFailure, CommandStatus, files};
 use bramah_syntax::diag::{Code, Diagnostic, nearest};
 
-/// One page a code: cause, smallest example, remedy.
+/// One page for each code: cause, smallest example, remedy.
 static PAGES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/docs/errors");
 
 /// Show the page behind a message's code, or what a class of the library offers
@@ -24,6 +26,7 @@ pub(super) struct ExplainArgs {
     code: Option<String>,
 }
 
+/// Prints the page, or the list of all codes when nothing is named.
 pub(super) fn run(args: &ExplainArgs) -> Result<CommandStatus, CommandFailure> {
     let text = match &args.code {
         None => list(),
@@ -33,26 +36,32 @@ pub(super) fn run(args: &ExplainArgs) -> Result<CommandStatus, CommandFailure> {
     Ok(CommandStatus::Fine)
 }
 
+/// All codes with their titles, a line each.
 fn list() -> String {
     Code::ALL.iter().map(|code| format!("{}  {}\n", code.id(), code.title())).collect()
 }
 
+/// The page of a code, or the description of a class. `Err`: neither exists.
 fn page(asked: &str) -> Result<String, CommandFailure> {
     let wanted = asked.trim().to_uppercase();
     let Some(code) = Code::ALL.iter().find(|c| c.id() == wanted) else {
         return describe(asked.trim()).ok_or_else(|| unknown(asked, &wanted));
     };
     let file = PAGES.get_file(format!("{}.md", code.id())).and_then(include_dir::File::contents_utf8);
+    // A code without a page of its own still has a title.
     Ok(match file {
         Some(text) => text.to_owned(),
         None => format!("# {}: {}\n", code.id(), code.title()),
     })
 }
 
+/// The failure for an unknown code or class, with the nearest match.
 fn unknown(asked: &str, wanted: &str) -> CommandFailure {
+    // `E230` for `W230` is a likely mistake: the letter is wrong, the number right.
     let same_number = |c: &&Code| wanted.len() == 4 && c.id()[1..] == wanted[1..];
     let near = Code::ALL.iter().find(same_number).map(|c| c.id());
     let near = near.or_else(|| nearest(wanted, Code::ALL.iter().map(|c| c.id())));
+    // No code has more than four characters, so a longer word was meant as a class.
     if near.is_none() && wanted.len() > 4 {
         let text = format!("there is neither a message nor a class of the library called `{asked}`");
         return Diagnostic::new(Code::BadArgument, text).help(format!("see {}", resembling(asked))).into();

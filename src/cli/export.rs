@@ -1,4 +1,8 @@
-//! `bramah export`
+//! `bramah export`: writes a circuit as a functional mock-up unit (FMU), a zip archive.
+//!
+//! A model enters; one `.fmu` file leaves. It holds the runtime library, the texts from which the circuit is compiled
+//! when the unit starts, the description and a page of documentation. The crate `bramah_fmi` makes the description;
+//! this module packs the archive.
 
 use std::fmt::Write as _;
 use std::hash::Hasher;
@@ -64,10 +68,14 @@ enum FmiVersionArg {
     Three,
 }
 
+/// Runs the subcommand. `Err`: the model is wrong, an output pattern matches nothing, or the runtime library is
+/// missing.
 pub(super) fn run(args: &ExportArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
+    // A missing library is reported before the model is compiled.
     let library = runtime(args.runtime.as_deref())?;
     let experiment = args.model.experiment(None, messages)?;
     let request = request(&experiment)?;
+    // Notes every file that the compiler reads; these files go into the unit.
     let recorder = ReadRecorder::new(&DiskWorld);
     let simulation = match Simulation::compile(&recorder, &request) {
         Ok(simulation) => simulation,
@@ -79,12 +87,14 @@ pub(super) fn run(args: &ExportArgs, messages: &mut MessageReporter) -> Result<C
     messages.sources = simulation.sources().clone();
     messages.say(&simulation.diagnostics);
     let interface = FmiInterface::new(&simulation, &args.outputs).map_err(|name| unknown(&simulation, &name))?;
+    // The token is a hash of the packed texts, so it is computed with an empty one and then filled in.
     let mut packed = recorder.packed(&request, &args.outputs, "");
     packed.token = token(&packed);
     let path = args.output_file.clone().unwrap_or_else(|| format!("{}.fmu", interface.class).into());
     files::ending(&path, "a unit", &["fmu"])?;
     let description = described(&request, &interface.class);
     let unit = FmuContents { interface: &interface, packed: &packed, description, fmi: args.fmi };
+    // The archive is built in memory first, so that an error leaves no file.
     let bytes = unit.write(&library, &network::write(&simulation.model().graph, &interface.class))?;
     let mut file = NewFile::create(&path)?;
     file.write_all(&bytes).map_err(|e| files::access(&path, "written", &e))?;
@@ -107,6 +117,7 @@ pub(super) fn run(args: &ExportArgs, messages: &mut MessageReporter) -> Result<C
     Ok(CommandStatus::Fine)
 }
 
+/// The failure for a pattern of `--outputs` without a match.
 fn unknown(simulation: &Simulation, pattern: &str) -> CommandFailure {
     let d = Diagnostic::new(Code::BadArgument, format!("`--outputs {pattern}` matches no variable"));
     let names: Vec<String> = simulation.variables().into_iter().map(|s| s.name).collect();
@@ -117,22 +128,28 @@ fn unknown(simulation: &Simulation, pattern: &str) -> CommandFailure {
     .into()
 }
 
-/// Marks description and texts as belonging together: the same for the same unit.
+/// The token that ties the description to the texts: a hash in the form of a GUID, the same for the same unit.
 fn token(packed: &PackedRequest) -> String {
+    // Two hashes with different seeds give the 128 bits of a GUID.
     let mut words = [0_u64; 2];
     for (seed, word) in (1..).zip(&mut words) {
         let mut hasher = FxHasher::default();
         hasher.write_u64(seed);
         hasher.write(packed.json().as_bytes());
+        // Another version may compile the same texts to another unit.
         hasher.write(env!("CARGO_PKG_VERSION").as_bytes());
         *word = hasher.finish();
     }
     let digits = format!("{:016x}{:016x}", words[0], words[1]);
+    // Groups of 8, 4, 4, 4 and 12 digits.
     let parts = [&digits[..8], &digits[8..12], &digits[12..16], &digits[16..20], &digits[20..]];
     format!("{{{}}}", parts.join("-"))
 }
 
-/// The library that lies beside the command, where it was built, or where it was installed.
+/// The runtime library of units. It is searched beside the command (where a build puts it) and in `../lib` (where an
+/// installation puts it).
+///
+/// `Err`: it is in none of these places.
 fn runtime(given: Option<&Path>) -> Result<Vec<u8>, CommandFailure> {
     let candidates: Vec<PathBuf> = match given {
         Some(path) => vec![path.to_owned()],
@@ -152,25 +169,31 @@ fn runtime(given: Option<&Path>) -> Result<Vec<u8>, CommandFailure> {
         .into())
 }
 
-/// What goes into a unit.
+/// Everything that goes into the archive.
 struct FmuContents<'a> {
+    /// The variables of the unit.
     interface: &'a FmiInterface,
+    /// The texts and the request.
     packed: &'a PackedRequest,
+    /// Description of the class.
     description: String,
+    /// Version of the standard.
     fmi: FmiVersionArg,
 }
 
 impl FmuContents<'_> {
+    /// The archive as bytes. `library` is the runtime, `picture` the network as SVG.
     fn write(&self, library: &[u8], picture: &str) -> Result<Vec<u8>, CommandFailure> {
         let failed = |e: &dyn std::fmt::Display| {
             CommandFailure::new(Code::FileAccess, format!("the unit cannot be packed: {e}"))
         };
         let version = if self.fmi == FmiVersionArg::Two { FmiVersion::Two } else { FmiVersion::Three };
         let description = description::write(self.interface, version, &self.packed.token, &self.description);
+        // The two versions of the standard prescribe different names for the first page.
         let page = if self.fmi == FmiVersionArg::Two { "documentation/_main.html" } else { "documentation/index.html" };
         let licences = [include_str!("../../LICENSE-MIT"), include_str!("../../LICENSE-APACHE")].join("\n\n");
         let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));
-        // the same circuit gives the same bytes: no times
+        // No time stamps, so that the same circuit gives the same bytes.
         let options = SimpleFileOptions::default()
             .compression_method(CompressionMethod::Deflated)
             .last_modified_time(zip::DateTime::default())
@@ -181,6 +204,7 @@ impl FmuContents<'_> {
             (format!("resources/{}", packed::FILE), texts.as_bytes(), 0o644),
             (page.to_owned(), page_text.as_bytes(), 0o644),
             ("documentation/licenses/license.txt".to_owned(), licences.as_bytes(), 0o644),
+            // Some importers load the library from the extracted archive and need the permission to execute.
             (self.binary(), library, 0o755),
         ];
         for (name, bytes, mode) in entries {
@@ -190,7 +214,7 @@ impl FmuContents<'_> {
         Ok(zip.finish().map_err(|e| failed(&e))?.into_inner())
     }
 
-    /// Where a simulator looks for the library of this machine.
+    /// The path of the library in the archive, as the standard prescribes for this machine.
     fn binary(&self) -> String {
         let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);
         let folder = match (self.fmi, os) {
@@ -203,7 +227,7 @@ impl FmuContents<'_> {
         format!("binaries/{folder}/{IDENTIFIER}{}", std::env::consts::DLL_SUFFIX)
     }
 
-    /// The network, and the parameters with their values.
+    /// The documentation page: the network, and tables of parameters, inputs and outputs.
     fn page(&self, picture: &str) -> String {
         let class = escape(&self.interface.class);
         let mut out = format!(

@@ -1,4 +1,10 @@
-//! `bramah gap`
+//! `bramah gap`: diagnoses where a model and its recordings differ.
+//!
+//! A study file and its recordings enter. A verdict (JSON), and optionally the corrected model and a report, leave. The
+//! crate `bramah_gap` does the diagnosis; this module reads the arguments, measures the time and writes the files.
+//!
+//! `--list` only lists the hypotheses, `--plan` evaluates planned recordings before they are measured. A verdict of any
+//! kind gives exit code 0.
 
 use clap::Args;
 use std::ops::ControlFlow;
@@ -63,12 +69,16 @@ pub(super) struct GapArgs {
     plan: bool,
 }
 
+/// Runs the subcommand in one of its three modes: list, plan or diagnosis.
+///
+/// `Err` gives exit code 1 when the nominal model is wrong, and 2 for the study, its files and columns.
 pub(super) fn run(args: &GapArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let read = Study::read(&DiskWorld, &args.study, &mut messages.sources);
     let study = messages.value(read)?;
     if args.list {
         let (all, warnings) = proposed(&DiskWorld, &study).map_err(|why| unusable(why, messages))?;
         files::print(&listed(&messages.value(StageResult::new(all, warnings))?))?;
+        // The list needs no recordings. Missing ones are reported because the diagnosis will need them.
         let folder = args.data.as_deref().unwrap_or(&study.folder);
         let there = |file: &str| folder.join(file).is_file();
         let missing = study.recordings.iter().filter(|r| !r.optional && !there(&r.file)).map(|r| r.file.as_str());
@@ -83,12 +93,16 @@ pub(super) fn run(args: &GapArgs, messages: &mut MessageReporter) -> Result<Comm
         (args.write_model.as_ref(), "a model", "mo"),
         (args.report.as_ref(), "a report", "html"),
     ];
+    // The diagnosis may take long, so a wrong output name is reported before it starts.
     for (path, what, known) in outputs.into_iter().filter_map(|(p, what, known)| Some((Path::new(p?), what, known))) {
         files::ready_as(path, what, &[known])?;
     }
     if args.plan { weigh_plan(args, &study, messages) } else { diagnose(args, &study, messages) }
 }
 
+/// Evaluates a planned experiment: what its recordings could show.
+///
+/// `Err`: the study cannot be used, or the model cannot be simulated with the planned inputs.
 fn weigh_plan(args: &GapArgs, study: &Study, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let data = args.data.as_deref();
     let mut question =
@@ -96,6 +110,7 @@ fn weigh_plan(args: &GapArgs, study: &Study, messages: &mut MessageReporter) -> 
     messages.say(&question.diagnostics);
     let stages = StageBar::new();
     let found = plan(&mut question.problem, &mut |stage| stages.say(stage));
+    // The progress line is removed before anything else is printed.
     stages.clear();
     let Some(found) = found else {
         let text = "the nominal model has no values on the way through the planned recordings";
@@ -108,11 +123,16 @@ fn weigh_plan(args: &GapArgs, study: &Study, messages: &mut MessageReporter) -> 
     Ok(CommandStatus::Fine)
 }
 
+/// Runs the diagnosis and writes the verdict, the corrected model and the report.
+///
+/// `Err`: the study or its recordings cannot be used, or a file cannot be written.
 fn diagnose(args: &GapArgs, study: &Study, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
+    // The budget counts from here, so it includes reading and compiling.
     let begun = std::time::Instant::now();
     let data = args.data.as_deref();
     let question = question(&DiskWorld, study, data, &mut messages.sources).map_err(|why| unusable(why, messages))?;
     messages.say(&question.diagnostics);
+    // Held recordings are read apart, because fitting must not see them.
     let held = question.held(data, &mut messages.sources).map_err(|diagnostics| CommandFailure { diagnostics })?;
     if held.recordings.is_empty() {
         messages.remark("There are no held recordings: the gap is that on the recordings that were used.");
@@ -122,6 +142,7 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut MessageReporter) -> Re
         stages.say(&stage.to_string());
         ControlFlow::Continue(())
     };
+    // The clock is passed as a closure because crates below the command must not read it.
     let gone = || begun.elapsed();
     let budget = Budget { time: args.budget, gone: &gone };
     let options = DiagnoseOptions { data, budget: Some(budget), effect: args.explain_rejected.as_deref() };
@@ -141,12 +162,14 @@ fn diagnose(args: &GapArgs, study: &Study, messages: &mut MessageReporter) -> Re
     Ok(CommandStatus::Fine)
 }
 
-/// The stages of a diagnosis as a line on a terminal.
+/// Shows the current stage of a diagnosis as a line on the terminal.
 struct StageBar {
+    /// The line; `None` when stderr is not a terminal.
     bar: Option<indicatif::ProgressBar>,
 }
 
 impl StageBar {
+    // A spinner, because the share of the work done is not known.
     fn new() -> Self {
         let terminal = std::io::IsTerminal::is_terminal(&std::io::stderr());
         let bar = terminal.then(indicatif::ProgressBar::new_spinner);
@@ -156,12 +179,14 @@ impl StageBar {
         StageBar { bar }
     }
 
+    /// Shows a new stage.
     fn say(&self, stage: &str) {
         if let Some(bar) = &self.bar {
             bar.set_message(stage.to_string());
         }
     }
 
+    /// Removes the line.
     fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
@@ -169,7 +194,9 @@ impl StageBar {
     }
 }
 
-/// What stops a study: its own mistakes, or those of its model with the texts they point into.
+/// The failure for a study that cannot be used.
+///
+/// When the mistake is in the model, the model's texts replace the sources, so that labels point into them.
 fn unusable(why: StudyError, messages: &mut MessageReporter) -> CommandFailure {
     if let Some(sources) = why.sources {
         messages.sources = sources;
@@ -177,7 +204,7 @@ fn unusable(why: StudyError, messages: &mut MessageReporter) -> CommandFailure {
     CommandFailure { diagnostics: why.diagnostics }
 }
 
-/// One line a hypothesis, and a count.
+/// The hypotheses as text: a line each with family, effect and places, then their number.
 fn listed(all: &[Hypothesis]) -> String {
     let mut text = String::new();
     for h in all {
@@ -188,7 +215,7 @@ fn listed(all: &[Hypothesis]) -> String {
     text
 }
 
-/// A time that is not nothing.
+/// Parses `--budget`: seconds or a time with a unit, greater than zero. `Err` is the text that clap shows.
 fn budget(text: &str) -> Result<Duration, String> {
     let seconds = bramah_analysis::experiment::seconds(text)?;
     let time = Duration::try_from_secs_f64(seconds).ok().filter(|t| !t.is_zero());

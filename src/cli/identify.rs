@@ -1,4 +1,8 @@
-//! `bramah identify`
+//! `bramah identify`: estimates parameters of a model from recordings of a test rig.
+//!
+//! A study file and its recordings enter. A JSON report, a summary on stderr and an optional picture leave.
+//! `bramah_analysis::identify` does the estimation. This module orders its steps: what can be estimated at all, the
+//! fit, held recordings, profiles.
 
 use std::path::{Path, PathBuf};
 
@@ -67,7 +71,9 @@ enum MethodArg {
     Inverse,
 }
 
+// Kept apart from the library's type, so that the library does not depend on clap.
 impl MethodArg {
+    /// The method of the library for this argument.
     fn method(self) -> IdentifyMethod {
         match self {
             MethodArg::Auto => IdentifyMethod::Auto,
@@ -77,18 +83,24 @@ impl MethodArg {
     }
 }
 
+/// Runs the subcommand. Returns `Wrong` (exit code 1) when the search did not converge.
+///
+/// `Err`: the study or its recordings cannot be used, or the model cannot follow the recordings.
 pub(super) fn run(args: &IdentifyArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
-    // what cannot be written is reported before the fit, which may take long
+    // The fit may take long, so a wrong output name is reported before it.
     files::ready_as(Path::new(&args.output), "a report", &["json"])?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let mut opened = open(&args.study, args.data.as_deref(), messages)?;
+    // Held recordings are read only after the fit, which must not depend on them.
     let train = opened.load(RecordingRole::Train, messages)?;
     let model = opened.model.clone();
     let bound = opened.bound.clone();
     let problem = IdentificationProblem::new(&model, &bound, &train).map_err(|d| opened.failure(d, messages))?;
     let fail = |d, opened: &StudySession, messages: &mut MessageReporter| opened.failure(vec![d], messages);
+    // A pattern without a match is reported before the fit.
     let profiled = profiled(args, &problem).map_err(|d| fail(d, &opened, messages))?;
     let found = Identification::new(&problem, &train, args.method.method()).map_err(|d| fail(d, &opened, messages))?;
+    // The separability is printed before the fit: it explains a fit that fails.
     messages.say(&found.suspicions);
     messages.remark(separation_words(&problem, &found).trim_end());
     let fit = found.fit_from(args.starts.into(), args.seed).map_err(|d| fail(d, &opened, messages))?;
@@ -110,12 +122,15 @@ pub(super) fn run(args: &IdentifyArgs, messages: &mut MessageReporter) -> Result
         plot::write(&picture(&problem, &fit, &profiles), &facts(&problem, &fit), path, messages)?;
     }
     let report = IdentificationReport::new(&problem, &found, &fit, &held, &profiles);
+    // The report is written last, because it includes the profiles.
     let text = serde_json::to_string_pretty(&report).expect("numbers and texts always serialize");
     write_text(&args.output, &format!("{text}\n"))?;
     Ok(if fit.converged { CommandStatus::Fine } else { CommandStatus::Wrong })
 }
 
-/// The parameters whose profiles are asked for.
+/// Indices of the parameters that `--profile` asks for; empty when the option is missing.
+///
+/// `Err`: the pattern matches no parameter of the study.
 fn profiled(args: &IdentifyArgs, problem: &IdentificationProblem<'_>) -> Result<Vec<usize>, Diagnostic> {
     let Some(asked) = &args.profile else { return Ok(Vec::new()) };
     let globs = GlobPatterns::new(std::slice::from_ref(asked));
@@ -127,7 +142,7 @@ fn profiled(args: &IdentifyArgs, problem: &IdentificationProblem<'_>) -> Result<
     Ok(chosen)
 }
 
-/// What stands below the picture in a page.
+/// Name and value pairs for the table below the picture in an HTML page, made from the lines of the summary.
 fn facts(problem: &IdentificationProblem<'_>, fit: &ParameterFit) -> Vec<(String, String)> {
     let words = fit_words(problem, fit, &[]);
     words.lines().filter_map(|l| l.trim().split_once([' ', ':'])).map(|(a, b)| (a.into(), b.trim().into())).collect()

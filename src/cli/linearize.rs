@@ -1,4 +1,10 @@
-//! `bramah linearize`
+//! `bramah linearize`: computes a linear model at an operating point, or a quasi-linear form over a grid of points.
+//!
+//! A model enters. Matrices (JSON, CSV, Matlab or Modelica), a summary and pictures of poles and frequency responses
+//! leave.
+//!
+//! The operating point is the state of a run at a given time, or the steady state reached from there. [`state_at`] and
+//! [`run_to`] are also used by `steady` and `partition`.
 
 use std::path::{Path, PathBuf};
 
@@ -65,11 +71,13 @@ pub(super) struct LinearizeArgs {
     poles: Option<PathBuf>,
 }
 
+/// Parses `--at`: a time in seconds or with a unit, also as `t=2`. `Err` is the text that clap shows.
 fn time(text: &str) -> Result<f64, String> {
     let text = text.trim();
     seconds(text.strip_prefix("t=").or_else(|| text.strip_prefix("time=")).unwrap_or(text))
 }
 
+/// Runs the subcommand. `Err`: the model is wrong, or has no values or no steady state at the point.
 pub(super) fn run(args: &LinearizeArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     fits(args)?;
     let experiment = args.model.experiment(None, messages)?;
@@ -80,7 +88,9 @@ pub(super) fn run(args: &LinearizeArgs, messages: &mut MessageReporter) -> Resul
     quasi_linear(args, &model, messages)
 }
 
-/// What is asked for together must have a meaning together; and files can be written, as is found out before the work.
+/// Checks the combination of the options and that all output files can be written, before the model is compiled.
+///
+/// `Err` explains which options exclude each other.
 fn fits(args: &LinearizeArgs) -> Result<(), CommandFailure> {
     let wrong = |text: String, cause: &str, help: &str| {
         Err(CommandFailure::from(Diagnostic::new(Code::BadArgument, text).note(cause).help(help)))
@@ -115,10 +125,12 @@ fn fits(args: &LinearizeArgs) -> Result<(), CommandFailure> {
     files::ready(Path::new(path))
 }
 
+/// Splits repeatable options with comma-separated names into one list.
 fn list(flags: &[String]) -> Vec<String> {
     flags.iter().flat_map(|f| split_list(f)).collect()
 }
 
+/// Linearizes at one point and writes the model, its summary and the pictures.
 fn linear_model(
     args: &LinearizeArgs,
     model: &CompiledModel,
@@ -130,6 +142,7 @@ fn linear_model(
     let state = operating_point(args, model, &chosen)?;
     let linear = linear::linearize(model, &chosen, &state).map_err(|e| no_values(&e.to_string()))?;
     let words = linear::words(&linear);
+    // With an output file stdout stays free, as the file may be stdout itself (`-`).
     match &args.output_file {
         Some(path) => {
             write(&linear, path, messages)?;
@@ -137,6 +150,7 @@ fn linear_model(
         }
         None => files::print(&words)?,
     }
+    // Both pictures need the poles.
     let poles = linear::poles(&linear);
     let picture = |figure: &Figure, path: &Path| {
         plot::write(figure, &[("model".to_owned(), linear.class.clone())], path, messages)
@@ -157,14 +171,17 @@ fn linear_model(
     Ok(CommandStatus::Fine)
 }
 
+/// The format of a linear model for a file name. `Err`: an unknown ending.
 fn linear_ending(path: &str) -> Result<&'static str, CommandFailure> {
     files::ending(Path::new(path), "a linear model", &["json", "csv", "mat", "mo"])
 }
 
+/// The format of a quasi-linear form for a file name. `Err`: an unknown ending.
 fn quasi_linear_ending(path: &str) -> Result<&'static str, CommandFailure> {
     files::ending(Path::new(path), "a quasi-linear form", &["json", "csv", "mat", "mo"])
 }
 
+/// Writes a linear model in the format of the file's name.
 fn write(linear: &StateSpace, path: &str, messages: &MessageReporter) -> Result<(), CommandFailure> {
     match linear_ending(path)? {
         "csv" => write_text(path, &linear::csv(linear))?,
@@ -178,12 +195,13 @@ fn write(linear: &StateSpace, path: &str, messages: &MessageReporter) -> Result<
     Ok(())
 }
 
+/// JSON with indentation and a line break at its end.
 fn pretty(value: &serde_json::Value) -> String {
     let text = serde_json::to_string_pretty(value).expect("numbers and texts always serialize");
     format!("{text}\n")
 }
 
-/// The state at the time asked for, or the steady state reached from there.
+/// The state at the time that `--at` gives, or the steady state reached from it.
 fn operating_point(
     args: &LinearizeArgs,
     model: &CompiledModel,
@@ -196,11 +214,14 @@ fn operating_point(
     steady::rest(model, chosen, &state, interrupt::flag()).map_err(|why| why.said(chosen).into())
 }
 
+/// The failure when the model has no finite derivatives at the point.
 fn no_values(why: &str) -> CommandFailure {
     CommandFailure::new(Code::NonFinite, format!("the model has no derivatives at this point: {why}"))
 }
 
-/// A run up to a time, or to no time at all, with the rows it made.
+/// Runs the model up to a time in seconds and returns the state and the rows. `None`: only the initial state.
+///
+/// `Err`: the time lies before the start, or the run failed.
 pub(super) fn state_at(model: &CompiledModel, time: Option<f64>) -> Result<(State, Trajectory), CommandFailure> {
     let mut settings = Settings::from_experiment(&model.dae.experiment);
     if let Some(time) = time.filter(|t| *t < settings.start_time) {
@@ -209,11 +230,13 @@ pub(super) fn state_at(model: &CompiledModel, time: Option<f64>) -> Result<(Stat
         return Err(d.note(format!("it starts at {start} s")).help("name a time from the start on").into());
     }
     settings.stop_time = time.unwrap_or(settings.start_time);
+    // The rows are only a by-product here; a coarse grid suffices.
     settings.interval = (settings.stop_time - settings.start_time) / 200.0;
     run_to(model, &settings)
 }
 
-/// A run, with its rows.
+/// Runs the model with these settings and returns its last state and its rows. `Err` has the diagnostics of a failed
+/// run.
 pub(super) fn run_to(model: &CompiledModel, settings: &Settings) -> Result<(State, Trajectory), CommandFailure> {
     let mut rows = Trajectory::new(signals(&model.dae, &settings.wanted));
     let mut reselect = |choice: &StateChoice| model.with_states(choice);
@@ -223,6 +246,7 @@ pub(super) fn run_to(model: &CompiledModel, settings: &Settings) -> Result<(Stat
     if run.end.is_success() { Ok((run.state, rows)) } else { Err(CommandFailure { diagnostics: run.diagnostics }) }
 }
 
+/// Computes the quasi-linear form over the grid and writes it.
 fn quasi_linear(
     args: &LinearizeArgs,
     model: &CompiledModel,
@@ -250,8 +274,10 @@ fn quasi_linear(
     Ok(CommandStatus::Fine)
 }
 
-/// Smallest and largest values of states and inputs: those of a run, widened by a tenth; of quantities that do not move
-/// a fifth of their value to both sides.
+/// Smallest and largest value of each state and input, used to judge where the form is valid.
+///
+/// The values are those of a run, widened by a tenth of their range. Quantities that do not move get a fifth of their
+/// value on both sides.
 fn ranges(
     model: &CompiledModel,
     chosen: &LinearizationSetup,
@@ -259,13 +285,14 @@ fn ranges(
 ) -> Result<Vec<(f64, f64)>, CommandFailure> {
     let mut settings = Settings::from_experiment(&model.dae.experiment);
     let all: Vec<VarId> = chosen.quantities().collect();
+    // The quantities may include variables that only the linearization knows; the run has no columns for them.
     settings.wanted = all.iter().copied().filter(|v| v.index() < model.dae.variables.len()).collect();
     let (_, rows) = run_to(model, &settings)?;
     let range = |k: usize, v: VarId| {
         let column = rows.columns.get(k).map_or(&[] as &[f64], Vec::as_slice);
         let now = state.values[v.index()];
         let (low, high) = column.iter().fold((now, now), |(l, h), x| (l.min(*x), h.max(*x)));
-        // what moves by less than the run can tell stands still
+        // A change below the tolerance of the run may be an error of the integration.
         let moves = high - low > settings.tolerance * high.abs().max(low.abs());
         let margin = if moves { 0.1 * (high - low) } else { 0.2 * now.abs() };
         (low - margin, high + margin)
@@ -273,7 +300,9 @@ fn ranges(
     Ok(all.iter().enumerate().map(|(k, &v)| range(k, v)).collect())
 }
 
-/// The values asked for each scheduling quantity.
+/// The values of each scheduling quantity, in its unit; `None` where the user gives no grid.
+///
+/// `Err`: an entry names no scheduling quantity, or one has two grids.
 fn grid(args: &LinearizeArgs, chosen: &LinearizationSetup) -> Result<Vec<Option<Vec<f64>>>, CommandFailure> {
     let mut all: Vec<Option<Vec<f64>>> = vec![None; chosen.rho().len()];
     for text in &args.grid {

@@ -1,4 +1,9 @@
-//! From what the user names to a compiled model, and everything there is to say about it.
+//! Compiles the model that the user names, up to the stage that a subcommand needs, and reports its messages.
+//!
+//! An `ExperimentSpecification` enters. It becomes a compile request for the disk. The result of a stage leaves, and
+//! its warnings go to the [`MessageReporter`].
+//!
+//! `--deny-warnings` is applied here, so it works for all subcommands alike.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +21,9 @@ use bramah_solve::lower::LoweringOptions;
 use bramah_syntax::diag::{Diagnostic, Severity};
 use bramah_syntax::world::DiskWorld;
 
-/// Up to the flat model, which exists also where the equations do not fit together.
+/// Compiles up to the flat model (scalar variables and equations).
+///
+/// It exists even when the number of equations is wrong. `Err`: an earlier stage has errors.
 pub(super) fn flatten(
     experiment: &ExperimentSpecification,
     messages: &mut MessageReporter,
@@ -25,7 +32,7 @@ pub(super) fn flatten(
     pass(outcome, experiment, messages)
 }
 
-/// Name, components and connections, also where ports are open.
+/// The name of the class with its components and connections, even when ports are still open.
 pub(super) fn graph(
     experiment: &ExperimentSpecification,
     messages: &mut MessageReporter,
@@ -34,7 +41,7 @@ pub(super) fn graph(
     pass(outcome, experiment, messages)
 }
 
-/// Up to the sorted equations, without running.
+/// Compiles up to the sorted equations, without machine code. `Err`: the model has errors.
 pub(super) fn sort(
     experiment: &ExperimentSpecification,
     messages: &mut MessageReporter,
@@ -43,20 +50,20 @@ pub(super) fn sort(
     pass(outcome, experiment, messages)
 }
 
-/// Names of all models of a source that can run.
+/// Full names of all models in the source that can run. `Err`: the source cannot be read.
 pub(super) fn runnable(experiment: &ExperimentSpecification) -> Result<Vec<String>, CommandFailure> {
     let found = bramah_model::compile::runnable(&DiskWorld, &request(experiment)?)
         .map_err(|diagnostics| CommandFailure { diagnostics })?;
     Ok(found.into_iter().map(|r| r.class).collect())
 }
 
-/// The description of a class, or nothing.
+/// The description of a class; empty when it has none or is not found.
 pub(super) fn described(request: &Request, class: &str) -> String {
     let all = bramah_model::compile::runnable(&DiskWorld, request).unwrap_or_default();
     all.into_iter().find(|r| r.class == class).map(|r| r.description).unwrap_or_default()
 }
 
-/// The whole way to a system that can run.
+/// Compiles a model completely, ready to run. `Err`: the model has errors.
 pub(super) fn compile(
     experiment: &ExperimentSpecification,
     messages: &mut MessageReporter,
@@ -65,6 +72,7 @@ pub(super) fn compile(
     pass(outcome, experiment, messages)
 }
 
+/// The compile request for an experiment. `Err`: a folder of `--library` does not exist.
 pub(super) fn request(experiment: &ExperimentSpecification) -> Result<Request, CommandFailure> {
     Ok(Request {
         source: source(Path::new(experiment.file.as_deref().unwrap_or_default())),
@@ -77,30 +85,40 @@ pub(super) fn request(experiment: &ExperimentSpecification) -> Result<Request, C
     })
 }
 
-/// The whole path of a file, by which a library is found where it is loaded.
+/// The absolute path of a file that external functions call. Names that are no files stay as they are.
 fn external(file: &str) -> PathBuf {
+    // A relative path would be searched again wherever the library is loaded.
     let path = Path::new(file);
     if path.exists() { std::path::absolute(path).unwrap_or_else(|_| path.into()) } else { path.into() }
 }
 
-/// The file or folder that is named; the whole path of one in a package whose folders lie above where the command runs.
+/// The path to compile: the one the user named, or its absolute form inside a package.
+///
+/// The absolute form is needed when the working directory belongs to a package: its enclosing folders, which give the
+/// full class name, are not part of a relative path.
 pub(super) fn source(named: &Path) -> PathBuf {
+    // A path that begins with `..` leads out of this folder and reaches the packages above by itself.
     let in_package = named.is_relative() && !named.starts_with("..") && Path::new("package.mo").exists();
     let whole = if in_package && named.exists() { std::path::absolute(named).ok() } else { None };
     whole.unwrap_or_else(|| named.to_path_buf())
 }
 
+/// The values of `--set` as overrides of the request.
 fn overrides(experiment: &ExperimentSpecification) -> Vec<Override> {
     let of = |(name, value): &(String, String)| Override { name: name.clone(), value: value.clone() };
     experiment.set.iter().map(of).collect()
 }
 
-/// Says remarks and warnings and hands out the value, or fails with everything that was said.
+/// Takes over the texts of a stage, prints its messages and returns its value.
+///
+/// With `--deny-warnings` warnings count as errors. `Err` has all diagnostics when there is an error or no value; they
+/// are then printed by `main`.
 fn pass<T>(
     outcome: CompileOutcome<T>,
     experiment: &ExperimentSpecification,
     messages: &mut MessageReporter,
 ) -> Result<T, CommandFailure> {
+    // Before anything is printed, as the labels point into these texts.
     messages.sources = outcome.sources;
     let mut diagnostics = outcome.diagnostics;
     if experiment.deny_warnings == Some(true) {
@@ -116,6 +134,7 @@ fn pass<T>(
     }
 }
 
+/// Raises a warning to an error. Notes stay.
 fn deny(diagnostic: &mut Diagnostic) {
     if diagnostic.severity == Severity::Warning {
         diagnostic.severity = Severity::Error;

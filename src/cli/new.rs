@@ -1,4 +1,7 @@
-//! `bramah new`
+//! `bramah new`: writes a commented circuit and experiment, or a nominal model and a study, to start from.
+//!
+//! A folder name enters; two files leave. The class is named after the folder. The templates in `new/` contain
+//! `{{Name}}` for the class and `{{name}}` for its name in lower case.
 
 use std::path::{Path, PathBuf};
 
@@ -9,9 +12,13 @@ use super::messages::MessageReporter;
 use super::{CommandFailure, CommandStatus};
 use bramah_syntax::diag::{Code, Diagnostic};
 
+/// Template of the circuit.
 const CIRCUIT: &str = include_str!("new/circuit.mo");
+/// Template of the experiment file.
 const EXPERIMENT: &str = include_str!("new/experiment.toml");
+/// Template of the nominal model for a study.
 const RIG: &str = include_str!("new/rig.mo");
+/// Template of the study file.
 const STUDY: &str = include_str!("new/study.toml");
 
 /// Begin a circuit, or a study of recordings, every line explained
@@ -30,11 +37,15 @@ pub(super) struct NewArgs {
     study: bool,
 }
 
+/// Writes the files and prints the next commands.
+///
+/// `Err`: the folder name gives no class name, a file exists already, or the folder cannot be written.
 pub(super) fn run(args: &NewArgs, messages: &MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let class = class_name(&args.folder)?;
     let name = class.to_lowercase();
     let (model, table) = if args.study { (RIG, STUDY) } else { (CIRCUIT, EXPERIMENT) };
     let files = [(args.folder.join(format!("{class}.mo")), model), (args.folder.join(format!("{name}.toml")), table)];
+    // Both are checked before either is written, so that nothing of the user is overwritten or mixed.
     for (path, _) in &files {
         if path.exists() {
             let text = format!("`{}` is already there; nothing was written", path.display());
@@ -61,11 +72,15 @@ pub(super) fn run(args: &NewArgs, messages: &MessageReporter) -> Result<CommandS
     Ok(CommandStatus::Fine)
 }
 
-/// `my-press` becomes `MyPress`: the folder's name as the name of a class.
+/// The class name for a folder: words joined, each with a capital letter, such as `MyPress` for `my-press`.
+///
+/// `Err`: the name does not begin with a letter.
 fn class_name(folder: &Path) -> Result<String, CommandFailure> {
+    // `.` and `..` have no name of their own, so the path is made absolute.
     let absolute = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
     let last = absolute.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let words = last.split(|c: char| !c.is_ascii_alphanumeric()).filter(|w| !w.is_empty());
+    // Only ASCII letters and digits are left in a word, so slicing after one byte is safe.
     let name: String = words.map(|w| w[..1].to_uppercase() + &w[1..]).collect();
     if name.starts_with(|c: char| c.is_ascii_alphabetic()) {
         return Ok(name);

@@ -1,4 +1,10 @@
-//! `bramah partition`
+//! `bramah partition`: finds the dead, load and saturation zones of a pump's flow over its speed.
+//!
+//! A model, the values of a speed and optionally of a load enter. The zones as text, a table of points and a picture
+//! leave.
+//!
+//! For each load the steady state is followed from speed to speed. `bramah_analysis::partition` computes the points and
+//! fits the zones.
 
 use std::path::PathBuf;
 
@@ -54,19 +60,25 @@ pub(super) struct PartitionArgs {
     plot: Option<PathBuf>,
 }
 
-/// A quantity and the values it takes.
+/// A speed or load: a variable and the values that it takes.
 struct PartitionAxis {
+    /// The input or parameter.
     variable: VarId,
+    /// Its name and unit.
     signal: Signal,
+    /// Values in its unit.
     values: Vec<f64>,
 }
 
-/// Flow over speed at one load.
+/// The flow over the speed at one load.
 struct FlowCurve {
+    /// The load in its unit; `None` when no load is varied.
     load: Option<f64>,
+    /// Speed and flow of each point.
     points: Vec<(f64, f64)>,
 }
 
+/// Runs the subcommand. `Err`: the model is wrong, a steady state is not found, or there is no load zone.
 pub(super) fn run(args: &PartitionArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     args.output_file.as_deref().map_or(Ok(()), |path| files::ready_as(path, "a table", &["csv"]))?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
@@ -76,17 +88,20 @@ pub(super) fn run(args: &PartitionArgs, messages: &mut MessageReporter) -> Resul
     let entries = entries.into_iter().flatten().map(|(option, text)| AxisOption::parse(option, text));
     let entries: Vec<AxisOption<'_>> = entries.collect::<Result<_, _>>()?;
     let inputs = entries.iter().map(|entry| entry.name.to_owned()).collect();
+    // Both quantities must be inputs of the linearization, which the search for a steady state uses.
     let choice = InputOutputSelection { inputs, outputs: vec![args.flow.clone()] };
     let chosen =
         LinearizationSetup::new(&model.flat, &choice, &[]).map_err(|diagnostics| CommandFailure { diagnostics })?;
     let axes = entries.iter().zip(chosen.asked()).map(|(entry, variable)| axis(&model, entry, variable));
     let mut axes: Vec<PartitionAxis> = axes.collect::<Result<_, _>>()?;
+    // The steady state is followed from speed to speed, so they must be in order and occur once.
     axes[0].values.sort_by(f64::total_cmp);
     axes[0].values.dedup();
     let flow = outputs(&model.flat, &choice.outputs)?;
     let flow = signals(&model.dae, &flow).remove(0);
     let curves = curves(&model, &chosen, &axes)?;
     if let Some(path) = &args.output_file {
+        // The load is the outer loop of the table, so it comes before the speed.
         let columns: Vec<Signal> = axes.iter().rev().map(|axis| &axis.signal).chain([&flow]).cloned().collect();
         let rows = curves.iter().flat_map(|c| c.points.iter().map(|p| c.load.into_iter().chain([p.0, p.1]).collect()));
         write_points(path, &columns, rows)?;
@@ -97,17 +112,22 @@ pub(super) fn run(args: &PartitionArgs, messages: &mut MessageReporter) -> Resul
     say(&model, &axes, &flow, &curves)
 }
 
+/// The variable with its values converted to its unit.
 fn axis(model: &CompiledModel, entry: &AxisOption<'_>, variable: VarId) -> Result<PartitionAxis, CommandFailure> {
     let signal = signals(&model.dae, &[variable]).remove(0);
     Ok(PartitionAxis { variable, values: entry.values(&signal.unit)?, signal })
 }
 
-/// The curve at each load, from the point at the slowest speed of the one before.
+/// Computes the curve at each load.
+///
+/// Each curve starts from the first point of the curve before it, which is a good initial guess. `Err` names the speed
+/// and load where no steady state was found.
 fn curves(
     model: &CompiledModel,
     chosen: &LinearizationSetup,
     axes: &[PartitionAxis],
 ) -> Result<Vec<FlowCurve>, CommandFailure> {
+    // Without `--load` there is one curve at the load of the model.
     let loads: Vec<Option<f64>> = match axes.get(1) {
         Some(load) => load.values.iter().copied().map(Some).collect(),
         None => vec![None],
@@ -128,7 +148,7 @@ fn curves(
     Ok(found)
 }
 
-/// Says at which point a search failed.
+/// Adds the speed and load at which a search failed to the failure.
 fn located(mut failure: CommandFailure, axes: &[PartitionAxis], speed: f64, load: Option<f64>) -> CommandFailure {
     let places = axes.iter().zip([Some(speed), load]).filter_map(|(axis, value)| Some((axis, value?)));
     let place: Vec<String> = places.map(|(axis, value)| with_unit(&axis.signal, value)).collect();
@@ -138,11 +158,14 @@ fn located(mut failure: CommandFailure, axes: &[PartitionAxis], speed: f64, load
     failure
 }
 
+/// `name = value unit` with six significant digits.
 fn with_unit(signal: &Signal, value: f64) -> String {
     format!("{} = {} {}", signal.name, number::rounded(value, 6), signal.unit).trim_end().to_owned()
 }
 
-/// Tells the zones; a load without one is an end of its own.
+/// Prints the zones of each curve.
+///
+/// `Err`: no curve has a load zone, in any direction.
 fn say(
     model: &CompiledModel,
     axes: &[PartitionAxis],
@@ -156,6 +179,7 @@ fn say(
         if let (Some(axis), Some(load)) = (axes.get(1), curve.load) {
             out += &format!("{}\n", with_unit(&axis.signal, load));
         }
+        // The two results are for positive and negative speeds.
         for (zones, word) in zones(&curve.points).into_iter().zip(["forward", "backward"]) {
             let Some(zones) = zones else { continue };
             none = false;
@@ -175,6 +199,7 @@ fn say(
     Ok(CommandStatus::Fine)
 }
 
+/// The zones of one direction as a line of text.
 fn words(zones: &FlowCharacteristic, speed: &Signal, flow: &Signal) -> String {
     let n = |value: f64| number::rounded(value, 5);
     let saturation = match zones.saturation {
@@ -192,6 +217,7 @@ fn words(zones: &FlowCharacteristic, speed: &Signal, flow: &Signal) -> String {
         .to_owned()
 }
 
+/// A picture with one curve for each load.
 fn picture(model: &CompiledModel, axes: &[PartitionAxis], flow: &Signal, curves: &[FlowCurve]) -> Figure {
     let label = |s: &Signal| if s.unit.is_empty() { s.name.clone() } else { format!("{} in {}", s.name, s.unit) };
     let series = curves.iter().enumerate().map(|(colour, curve)| PlotSeries {

@@ -1,4 +1,7 @@
-//! `bramah plot`
+//! `bramah plot`: draws results as SVG, PNG or an interactive HTML page.
+//!
+//! Result files enter, one picture leaves. `bramah_plot` chooses the panels and draws them. Other subcommands use
+//! [`write`], [`ready`] and [`write_picture`] for their own pictures.
 
 use std::path::{Path, PathBuf};
 
@@ -55,6 +58,7 @@ pub(super) struct PlotArgs {
     unit_system: UnitSystem,
 }
 
+/// Parses `--unit-system`. `Err` is the text that clap shows.
 fn unit_system(text: &str) -> Result<UnitSystem, String> {
     match text {
         "given" => Ok(UnitSystem::AsGiven),
@@ -63,10 +67,12 @@ fn unit_system(text: &str) -> Result<UnitSystem, String> {
     }
 }
 
+/// Runs the subcommand. `Err`: a file cannot be read, or nothing matches what is to be drawn.
 pub(super) fn run(args: &PlotArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let mut trajectories = Vec::new();
     for path in &args.results {
         let mut trajectory = data::result(path, args.time_column.as_deref(), messages)?;
+        // Units of the user come before the unit system, which only converts known units.
         data::apply_units(&mut trajectory, &args.unit)?;
         args.unit_system.apply(&mut trajectory);
         trajectories.push(trajectory);
@@ -81,6 +87,7 @@ pub(super) fn run(args: &PlotArgs, messages: &mut MessageReporter) -> Result<Com
     let runs: Vec<LabelledTrajectory<'_>> =
         labels.iter().zip(&trajectories).map(|(label, trajectory)| LabelledTrajectory { label, trajectory }).collect();
     let output = args.output.clone().unwrap_or_else(|| args.results[0].with_extension("svg"));
+    // With both axes given, the results are rows of a map and not curves.
     if let (Some(x), Some(y)) = (&args.x, &args.y) {
         let drawn = map(&runs, &GlobPatterns::new(&args.variables), x, y, &args.title);
         let drawn = drawn.map_err(|e| not_found(&e, args, &trajectories))?;
@@ -96,7 +103,9 @@ pub(super) fn run(args: &PlotArgs, messages: &mut MessageReporter) -> Result<Com
     Ok(CommandStatus::Fine)
 }
 
-/// Writes a figure in the format that the file's name asks for.
+/// Writes a figure in the format that the file's name asks for. `facts` are listed below the picture of a page.
+///
+/// `Err`: the ending is not one of a picture, or the file cannot be written.
 pub(super) fn write(
     figure: &Figure,
     facts: &[(String, String)],
@@ -110,7 +119,7 @@ pub(super) fn write(
     deliver(path, &bytes, messages)
 }
 
-/// Says before the work whether a picture of this name can be written.
+/// Checks before long work that a picture of this name can be written.
 pub(super) fn ready(path: &Path) -> Result<(), CommandFailure> {
     PictureFormat::of(path).and_then(|_| files::ready(path))
 }
@@ -118,13 +127,16 @@ pub(super) fn ready(path: &Path) -> Result<(), CommandFailure> {
 /// The formats of pictures.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum PictureFormat {
+    /// A vector picture.
     Svg,
+    /// Pixels.
     Png,
+    /// An HTML page with zoom and hover.
     Page,
 }
 
 impl PictureFormat {
-    /// As the file's name asks for; SVG on stdout.
+    /// The format for a file's name; SVG for stdout (`-`). `Err`: another ending.
     fn of(path: &Path) -> Result<PictureFormat, CommandFailure> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
         match extension.as_str() {
@@ -140,7 +152,7 @@ impl PictureFormat {
     }
 }
 
-/// A drawn picture as the bytes of an image.
+/// Encodes an SVG picture in a format. `Err`: it cannot be drawn as pixels.
 fn drawn(picture: String, format: PictureFormat) -> Result<Vec<u8>, CommandFailure> {
     match format {
         PictureFormat::Png => png::write(&picture).map_err(|e| CommandFailure::new(Code::BadArgument, e)),
@@ -148,7 +160,7 @@ fn drawn(picture: String, format: PictureFormat) -> Result<Vec<u8>, CommandFailu
     }
 }
 
-/// Writes a file, or prints where the name is `-`.
+/// Writes the bytes to a file, or to stdout for `-`. Only a file is announced, since stdout carries the data.
 fn deliver(path: &Path, bytes: &[u8], messages: &MessageReporter) -> Result<(), CommandFailure> {
     if path == Path::new("-") {
         return files::print(&String::from_utf8_lossy(bytes));
@@ -158,7 +170,7 @@ fn deliver(path: &Path, bytes: &[u8], messages: &MessageReporter) -> Result<(), 
     Ok(())
 }
 
-/// Writes a picture that is drawn already; a page shows the curves of `figure` below it.
+/// Writes a picture that is drawn already. A page shows it, and the curves of `figure` below.
 pub(super) fn write_picture(
     picture: &str,
     figure: &Figure,
@@ -172,7 +184,7 @@ pub(super) fn write_picture(
     deliver(path, &bytes, messages)
 }
 
-/// Writes a map, which has no page with zoom and hover.
+/// Writes a map as SVG or PNG. `Err`: an HTML page is asked for, which maps do not have.
 fn write_map(picture: &str, path: &Path, messages: &MessageReporter) -> Result<(), CommandFailure> {
     if PictureFormat::of(path)? == PictureFormat::Page {
         return Err(CommandFailure::new(Code::BadArgument, "a map is written as .svg or .png"));
@@ -180,15 +192,17 @@ fn write_map(picture: &str, path: &Path, messages: &MessageReporter) -> Result<(
     write_picture(picture, &Figure::default(), path, messages)
 }
 
-/// A file's name without folder and extension.
+/// The file name without folder and extension; used as the label of a result.
 pub(super) fn stem(path: &Path) -> String {
     path.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
+/// The failure when nothing can be drawn, with similar names and a list of the first variables.
 fn not_found(why: &str, args: &PlotArgs, trajectories: &[Trajectory]) -> CommandFailure {
     let names = || trajectories.iter().flat_map(|t| t.signals.iter().map(|s| s.name.as_str()));
     let mut diagnostic = Diagnostic::new(Code::BadArgument, why);
     let asked = GlobPatterns::new(&[args.variables.as_slice(), args.panel.as_slice()].concat());
+    // Every name that the user wrote and that no file has gets its own suggestion.
     let wanted = args.x.as_deref().into_iter().chain(args.y.as_deref()).chain(asked.unused(names()));
     for name in wanted.filter(|n| !names().any(|k| k == *n)) {
         if let Some(near) = bramah_syntax::diag::nearest(name, names()) {

@@ -1,26 +1,33 @@
-//! Progress of a long run, on a terminal only.
+//! The progress bar of a run, shown only on a terminal.
+//!
+//! `simulate` creates one for each run and reports the simulated time. The bar stays hidden for short runs, so that it
+//! does not flicker.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-/// Runs that are over sooner show nothing.
+/// The bar appears after this time.
 const QUIET: Duration = Duration::from_millis(700);
-/// Parts into which the run is cut for the bar.
+/// Length of the bar in its own units. Simulated time is scaled to it, because the bar counts whole numbers.
 const PARTS: u64 = 10_000;
 
-/// A line with simulated time, events and the expected rest.
+/// A bar with the simulated time, the number of events and the expected remaining time.
 #[derive(Debug)]
 pub(super) struct SimulationBar {
+    /// The bar; `None` when stderr is not a terminal.
     bar: Option<ProgressBar>,
+    /// Start of the run in seconds.
     start: f64,
+    /// Length of the run in seconds, greater than zero.
     length: f64,
+    /// When the bar was created.
     begun: Instant,
 }
 
 impl SimulationBar {
-    /// For a run from `start` to `stop`; nothing is shown where stderr is no terminal.
+    /// The bar of a run from `start` to `stop` in seconds. It is hidden at first.
     pub fn new(start: f64, stop: f64) -> Self {
         let bar = std::io::stderr()
             .is_terminal()
@@ -29,12 +36,14 @@ impl SimulationBar {
             let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}  rest {eta}");
             bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("=> "));
         }
+        // A run of length zero must not divide by zero.
         SimulationBar { bar, start, length: (stop - start).max(f64::MIN_POSITIVE), begun: Instant::now() }
     }
 
-    /// Notes how far the run is.
+    /// Shows the simulated time in seconds, the number of steps where known, and the number of events.
     pub fn show(&self, time: f64, steps: Option<u64>, events: u64) {
         let Some(bar) = &self.bar else { return };
+        // A hidden bar still waits for its delay. It is then redrawn at most 5 times a second.
         if bar.is_hidden() {
             if self.begun.elapsed() < QUIET {
                 return;
@@ -47,7 +56,7 @@ impl SimulationBar {
         bar.set_message(format!("t = {time:.4} s{steps}  {events} events"));
     }
 
-    /// Removes the line.
+    /// Removes the bar from the terminal.
     pub fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();

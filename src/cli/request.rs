@@ -1,4 +1,7 @@
-//! The flags of `simulate` and the experiment file, made one.
+//! The arguments that name a model and its run, shared by several subcommands, and experiment files.
+//!
+//! clap fills [`ModelArgs`] and [`RunArgs`]. [`ModelArgs::experiment`] merges them with the experiment file (TOML), if
+//! FILE is one, into an `ExperimentSpecification`. A flag takes precedence over the file.
 
 use std::path::{Path, PathBuf};
 
@@ -88,6 +91,7 @@ pub(super) struct RunArgs {
     statistics: Option<String>,
 }
 
+/// Parses `NAME=VALUE` of `--set`. `Err` is the text that clap shows.
 fn assignment(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((name, value)) if !name.trim().is_empty() && !value.trim().is_empty() => {
@@ -97,12 +101,16 @@ fn assignment(text: &str) -> Result<(String, String), String> {
     }
 }
 
+/// Parses `--interpolation`. `Err` is the text that clap shows.
 fn hold(text: &str) -> Result<InputHold, String> {
     InputHold::parse(text).ok_or_else(|| "`held` or `linear` is expected".to_owned())
 }
 
 impl ModelArgs {
-    /// What the flags say, over what the experiment file says where FILE is one.
+    /// The experiment: the values of the flags, then those of the experiment file where FILE is one.
+    ///
+    /// `run` has the flags of the run; `None` for subcommands without them. `Err`: the experiment file cannot be used
+    /// or does not name a model, or `--map` has errors.
     pub fn experiment(
         &self,
         run: Option<&RunArgs>,
@@ -113,6 +121,7 @@ impl ModelArgs {
         flags.set = self.set.clone();
         flags.library = self.library.clone();
         flags.external = self.external.clone();
+        // A missing flag is `None`, not `false`, so that the file can switch it on.
         flags.deny_warnings = self.deny_warnings.then_some(true);
         if !is_experiment(&self.file) {
             flags.file = Some(self.file.clone());
@@ -128,7 +137,9 @@ impl ModelArgs {
 }
 
 impl RunArgs {
+    /// The values of these flags alone. `Err`: an entry of `--map` has errors.
     fn experiment(&self) -> Result<ExperimentSpecification, CommandFailure> {
+        // Commas inside brackets belong to an index and do not split the list.
         let entries = self.map.iter().flat_map(|m| split_list(m));
         let map: Result<Vec<InputMap>, String> = entries.map(|e| InputMap::parse(&e)).collect();
         Ok(ExperimentSpecification {
@@ -151,11 +162,14 @@ impl RunArgs {
     }
 }
 
+/// Whether FILE is an experiment file, by its ending.
 fn is_experiment(file: &str) -> bool {
     Path::new(file).extension().is_some_and(|e| e.eq_ignore_ascii_case("toml"))
 }
 
-/// Reads an experiment file; its paths become relative to the working directory.
+/// Reads an experiment file. Its paths become relative to the working directory.
+///
+/// `Err`: it cannot be read, is not UTF-8, or has errors.
 fn read_experiment(path: &Path, messages: &mut MessageReporter) -> Result<ExperimentSpecification, CommandFailure> {
     let bytes = std::fs::read(path).map_err(|e| access(path, "read", &e))?;
     let text = String::from_utf8(bytes).map_err(|_| {
@@ -166,32 +180,36 @@ fn read_experiment(path: &Path, messages: &mut MessageReporter) -> Result<Experi
     let mut experiment = checked.value.ok_or(CommandFailure { diagnostics: checked.diagnostics })?;
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let beside = |file: &mut String| *file = relative(&folder, file);
-    // A class that ships with bramah is named, not a path: only what exists as a file is moved.
+    // `file` may also be the name of a shipped class. It is taken as a path only when such a file exists.
     experiment.file.iter_mut().filter(|f| folder.join(&**f).exists()).for_each(beside);
     for file in [&mut experiment.output_file, &mut experiment.plot, &mut experiment.input, &mut experiment.statistics] {
+        // `-` is stdout, not a file.
         file.iter_mut().filter(|f| *f != "-").for_each(beside);
     }
     experiment.library.iter_mut().for_each(beside);
+    // The word `annotations` is a setting, not a file.
     experiment.external.iter_mut().filter(|f| *f != ANNOTATIONS).for_each(beside);
     Ok(experiment)
 }
 
+/// A path of the experiment file as seen from the working directory.
 fn relative(folder: &Path, file: &str) -> String {
     folder.join(file).display().to_string()
 }
 
-/// The folders of an experiment's `--library`, then those of MODELICAPATH.
+/// The library folders of an experiment: those of `--library`, then those of the variable MODELICAPATH.
 ///
 /// # Errors
-/// When a folder of `--library` does not exist.
+/// A folder of `--library` does not exist.
 pub(super) fn library_folders(experiment: &ExperimentSpecification) -> Result<Vec<PathBuf>, CommandFailure> {
     folders(&experiment.library)
 }
 
-/// The folders of `--library`, then those of MODELICAPATH.
+/// The folders of `--library`, followed by those of the variable MODELICAPATH.
 ///
 /// # Errors
-/// When a folder of `--library` does not exist.
+/// A folder of `--library` does not exist. Missing folders of MODELICAPATH are ignored, because it may name folders of
+/// other tools.
 pub(super) fn folders(library: &[String]) -> Result<Vec<PathBuf>, CommandFailure> {
     let mut folders: Vec<PathBuf> = Vec::new();
     for folder in library {

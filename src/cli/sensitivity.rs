@@ -1,4 +1,9 @@
-//! `bramah sensitivity`
+//! `bramah sensitivity`: computes how the trajectories of variables change with parameters.
+//!
+//! A model enters. A ranking on stdout, a CSV table of trajectories and a picture leave.
+//!
+//! `bramah_analysis::sensitivity` computes exact derivatives in one run, and falls back to central differences of runs
+//! where they do not exist. All numbers are for a relative change of a parameter.
 
 use std::path::PathBuf;
 
@@ -50,10 +55,12 @@ pub(super) struct SensitivityArgs {
     plot: Option<PathBuf>,
 }
 
-/// Curves in a panel, and lines of the ranking.
+/// Curves in a panel of the picture.
+/// Lines of the ranking.
 const SHOWN: usize = 6;
 const RANKED: usize = 20;
 
+/// Runs the subcommand. `Err`: the model is wrong, a run failed, or an option names nothing.
 pub(super) fn run(args: &SensitivityArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     args.output_file.as_deref().map_or(Ok(()), |path| files::ready_as(path, "a table", &["csv"]))?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
@@ -68,8 +75,10 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut MessageReporter) -> Res
             return Err(CommandFailure::new(Code::BadArgument, text));
         }
         settings.stop_time = stop;
+        // The interval of the annotation belongs to its own stop time.
         settings.interval = (stop - settings.start_time) / 500.0;
     }
+    // Derivatives need a tighter tolerance than trajectories.
     settings.tolerance = settings.tolerance.min(TOLERANCE);
     let found = sensitivity(&model, &settings, &moved, interrupt::flag())
         .map_err(|why| CommandFailure::new(Code::StepTooSmall, format!("a run failed: {why}")))?;
@@ -77,6 +86,7 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut MessageReporter) -> Res
     if !by_runs.is_empty() {
         messages.remark(by_runs.trim_end());
     }
+    // Either the table or the ranking: both on stdout could not be read by a program.
     match &args.output_file {
         Some(path) => write_text(&path.display().to_string(), &csv(&found)?)?,
         None => files::print(&words(&found))?,
@@ -87,16 +97,21 @@ pub(super) fn run(args: &SensitivityArgs, messages: &mut MessageReporter) -> Res
     Ok(CommandStatus::Fine)
 }
 
+/// The variables to differentiate: those that `--variables` chooses, else the top-level Real outputs, else the states.
 fn variables(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<VarId>, CommandFailure> {
     if !args.variables.is_empty() {
         return columns::choose(&model.dae, &args.variables, &ResultTarget::stdout());
     }
     let all = || (0..).map(VarId).zip(&model.flat.variables);
     let outputs: Vec<VarId> = all().filter(|(_, v)| v.output && v.ty == ScalarType::Real).map(|(v, _)| v).collect();
+    // Sorting may add states that the flat model does not have; they have no name that the user knows.
     let states = || model.dae.states.iter().copied().filter(|v| v.index() < model.flat.variables.len());
     Ok(if outputs.is_empty() { states().collect() } else { outputs })
 }
 
+/// The parameters to vary. Without patterns these are visible Real parameters that no other parameter decides.
+///
+/// `Err`: no parameter is left. Constants that the structure depends on cannot vary in a run.
 fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<SensitivityParameter>, CommandFailure> {
     let mut values = model.system.layout.values();
     model.system.evaluate_parameters(&mut values, &[]);
@@ -105,6 +120,7 @@ fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<Sensi
     let fits = |v: VarId| {
         let variable = &flat.variables[v.index()];
         let real = variable.variability == Variability::Parameter && variable.ty == ScalarType::Real;
+        // A pattern may also choose a hidden or dependent parameter.
         let named = if globs.is_empty() { !variable.hidden && flat.is_root(v) } else { globs.matches(&variable.name) };
         real && named
     };
@@ -112,6 +128,7 @@ fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<Sensi
     let moved: Vec<SensitivityParameter> = all
         .filter(|v| fits(*v))
         .map(|v| SensitivityParameter::of(model, v, &values))
+        // Infinite or huge values (a limit that is switched off) have no meaningful relative change.
         .filter(|m| m.size.is_finite() && m.size < 1e30)
         .collect();
     if moved.is_empty() {
@@ -121,6 +138,7 @@ fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<Sensi
     Ok(moved)
 }
 
+/// The ranking as text: a line for each of the strongest parameters.
 fn words(found: &Sensitivity) -> String {
     let names: Vec<&str> = found.plain.signals.iter().map(|s| s.name.as_str()).collect();
     let mut out = format!("per cent of the range for 1 % of the parameter: {}\n", names.join(", "));
@@ -137,12 +155,12 @@ fn words(found: &Sensitivity) -> String {
     out
 }
 
-/// Stands behind what belongs to a parameter that was found by differences.
+/// The text behind the name of a parameter whose derivatives are differences of runs; else empty.
 fn mark(found: &Sensitivity, parameter: usize) -> &'static str {
     if found.differences[parameter].is_some() { " (differences)" } else { "" }
 }
 
-/// Which parameters are differences of runs, by reason.
+/// Lists the parameters whose derivatives are differences of runs, grouped by the reason. Empty when there are none.
 fn differences(found: &Sensitivity) -> String {
     let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
     for ((name, _), why) in found.parameters.iter().zip(&found.differences) {
@@ -160,6 +178,7 @@ fn differences(found: &Sensitivity) -> String {
     reasons.into_iter().map(line).collect()
 }
 
+/// The trajectories as CSV: a column for each parameter and variable. `Err`: the text cannot be written.
 fn csv(found: &Sensitivity) -> Result<String, CommandFailure> {
     let mut out = Vec::new();
     let pairs: Vec<(usize, usize)> =
@@ -178,7 +197,7 @@ fn csv(found: &Sensitivity) -> Result<String, CommandFailure> {
     Ok(String::from_utf8_lossy(&out).into_owned())
 }
 
-/// One panel a variable, with the parameters that move it most.
+/// A figure with one panel for each variable, showing the parameters with the strongest influence on it.
 fn picture(found: &Sensitivity, class: &str) -> Figure {
     let panels = (0..found.plain.signals.len()).map(|v| {
         let mut order: Vec<usize> = (0..found.parameters.len()).collect();

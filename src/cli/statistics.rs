@@ -1,19 +1,21 @@
-//! The statistics file: what is known about a run, also when it failed.
+//! The file of `--statistics`: counts and times of a run, as one JSON object.
+//!
+//! `simulate` fills the record step by step and writes it even when the run failed. A value that is not known is null.
 
 use serde::Serialize;
 
-/// One JSON object; what is not known is null. Times in seconds.
+/// What is known about a run. Times are in seconds.
 #[derive(Clone, Debug, Default, Serialize)]
 pub(super) struct StatisticsRecord {
-    /// From process start to the lowered system.
+    /// Time from reading the files to machine code.
     pub compile_s: Option<f64>,
-    /// Finding the initial values.
+    /// Time for finding the initial values.
     pub initialize_s: Option<f64>,
-    /// From the first step to the last, interpolation included, writing excluded.
+    /// Time from the first step to the last. Interpolation of rows is included, writing is not.
     pub solve_s: Option<f64>,
-    /// Accepted steps.
+    /// Steps that the integrator accepted.
     pub steps: Option<u64>,
-    /// Evaluations of the equations.
+    /// Evaluations of the residual of the equations.
     pub residual_evaluations: Option<u64>,
     /// Evaluations of the Jacobian.
     pub jacobian_evaluations: Option<u64>,
@@ -21,28 +23,29 @@ pub(super) struct StatisticsRecord {
     pub factorizations: Option<u64>,
     /// Steps repeated because their error was too large.
     pub error_test_failures: Option<u64>,
-    /// Events.
+    /// Events that the run handled.
     pub events: Option<u64>,
-    /// Unknowns of the system that IDA sees.
+    /// Unknowns of the system that IDA integrates.
     pub unknowns: Option<usize>,
-    /// Differential ones among them.
+    /// Unknowns whose derivatives appear in the system.
     pub states: Option<usize>,
-    /// The most memory the process has held.
+    /// The largest resident memory of the process in bytes. Null where the system does not report it.
     pub peak_memory_bytes: Option<u64>,
-    /// How the run ended; null when it did not begin.
+    /// How the run ended, as one word. Null when it did not begin.
     pub end: Option<&'static str>,
 }
 
 impl StatisticsRecord {
-    /// As text.
+    /// The record as indented JSON.
     pub fn to_json(&self) -> String {
         let text = serde_json::to_string_pretty(self).expect("numbers and words always serialize");
         format!("{text}\n")
     }
 }
 
-/// The most memory this process has held, as Linux tells it.
+/// The largest resident memory of this process in bytes. `None` on systems other than Linux.
 pub(super) fn peak_memory() -> Option<u64> {
+    // The kernel keeps this maximum itself, so the end of the run is early enough to ask for it.
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|l| l.strip_prefix("VmHWM:"))?;
     let kilobytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;

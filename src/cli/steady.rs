@@ -1,4 +1,9 @@
-//! `bramah steady`
+//! `bramah steady`: finds operating points where nothing changes, and the power balance there.
+//!
+//! A model enters. A table of points on stdout or as CSV, the power into each component and a Sankey diagram leave.
+//!
+//! With `--over` the point is followed over the values of an input or parameter, each search starting from the point
+//! before. With `--transient` the mean power over an entire run is balanced instead.
 
 use std::path::{Path, PathBuf};
 
@@ -62,7 +67,9 @@ pub(super) struct SteadyArgs {
     transient: bool,
 }
 
+/// Runs the subcommand. `Err`: the model is wrong or has no steady state; points found before that are written.
 pub(super) fn run(args: &SteadyArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
+    // The Sankey diagram has no HTML page, so the usual check of pictures does not apply.
     if let Some(path) = &args.sankey {
         let of_picture = ["svg", "png"].iter().any(|e| path.extension().is_some_and(|x| x.eq_ignore_ascii_case(e)));
         if !of_picture {
@@ -89,6 +96,7 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut MessageReporter) -> Result<C
     let moved = chosen.asked();
     let mut state = state_at(&model, args.from)?.0;
     let mut failed = None;
+    // Without `--over` there is one value, which is not assigned to anything.
     for &value in &values {
         if let Some(&v) = moved.first().filter(|_| !over.is_empty()) {
             state.values[v.index()] = value;
@@ -97,6 +105,7 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut MessageReporter) -> Result<C
             Ok(found) => {
                 state = found;
                 let (rows, after) = settled(&model, &chosen, &state, &wanted)?;
+                // The value stands in the place of the time. The table is written with its name or as blocks.
                 table.push(value, &rows);
                 state = after;
             }
@@ -106,6 +115,7 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut MessageReporter) -> Result<C
             }
         }
     }
+    // The points found so far are useful even when a later one fails.
     tell(args, &over, &table)?;
     if let Some(why) = failed {
         let mut d = why.said(&chosen);
@@ -123,7 +133,9 @@ pub(super) fn run(args: &SteadyArgs, messages: &mut MessageReporter) -> Result<C
     Ok(CommandStatus::Fine)
 }
 
-/// What is moved, and its values; one point without a name where nothing is.
+/// The quantity that `--over` names and its values. Without the option: no name, and one value that is not used.
+///
+/// `Err`: the entry is not of the form `NAME=VALUES`, or the values do not fit the unit.
 fn over(args: &SteadyArgs, model: &CompiledModel) -> Result<(Vec<String>, Vec<f64>), CommandFailure> {
     let Some(entry) = &args.over else { return Ok((Vec::new(), vec![0.0])) };
     let entry = AxisOption::parse("--over", entry)?;
@@ -132,6 +144,7 @@ fn over(args: &SteadyArgs, model: &CompiledModel) -> Result<(Vec<String>, Vec<f6
     Ok((vec![entry.name.to_owned()], values))
 }
 
+/// The variables to show: those that `--variables` chooses, else states and top-level outputs.
 fn wanted(args: &SteadyArgs, model: &CompiledModel, chosen: &LinearizationSetup) -> Result<Vec<VarId>, CommandFailure> {
     if !args.variables.is_empty() {
         return columns::choose(&model.dae, &args.variables, &super::recorder::ResultTarget::stdout());
@@ -144,9 +157,10 @@ fn wanted(args: &SteadyArgs, model: &CompiledModel, chosen: &LinearizationSetup)
     Ok(all)
 }
 
-/// Seconds over which a steady state is watched, to see how fast positions move.
+/// Length in seconds of the short run that shows the other variables and the speed of positions at a steady state.
 const MOMENT: f64 = 1e-3;
 
+/// Runs the model for [`MOMENT`] from a steady state and returns the rows and the last state.
 fn moment(
     model: &CompiledModel,
     chosen: &LinearizationSetup,
@@ -157,7 +171,7 @@ fn moment(
     ran.map_err(|diagnostics| CommandFailure { diagnostics })
 }
 
-/// The values at a steady state, and the state with everything that follows from it.
+/// The values of `wanted` at a steady state, and the complete state to start the next search from.
 fn settled(
     model: &CompiledModel,
     chosen: &LinearizationSetup,
@@ -165,10 +179,12 @@ fn settled(
     wanted: &[VarId],
 ) -> Result<(Vec<f64>, State), CommandFailure> {
     let (rows, mut after) = moment(model, chosen, state, wanted)?;
+    // The next search must begin at the same time, not a moment later.
     after.time = state.time;
     Ok((rows.columns.iter().map(|c| c[0]).collect(), after))
 }
 
+/// Prints the points, or writes them to the file of `--output-file`.
 fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), CommandFailure> {
     if let Some(path) = &args.output_file {
         let mut all: Vec<Signal> = over.iter().map(Signal::new).collect();
@@ -188,7 +204,7 @@ fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), Co
     files::print(&out)
 }
 
-/// The power balance in words, and its picture.
+/// Prints the power balance and writes its Sankey diagram.
 fn power(
     args: &SteadyArgs,
     model: &CompiledModel,
@@ -201,17 +217,19 @@ fn power(
     files::print(&balance_words(&budgets))?;
     let Some(path) = &args.sankey else { return Ok(()) };
     let mut streams = balance::streams(ports, &powers, &model.graph);
-    // at rest nothing is stored any more
+    // At a steady state nothing is stored, so all remaining power is lost.
     streams.extend(balance::left(&budgets, if args.transient { "lost or stored" } else { "power lost" }));
     let most = streams.iter().map(|s| s.power).fold(0.0, f64::max);
     let flows: Vec<sankey::SankeyFlow> = streams
         .into_iter()
+        // Streams below a ten-thousandth of the largest would be hairlines in the picture.
         .filter(|s| s.power > 1e-4 * most)
         .map(|s| sankey::SankeyFlow { from: s.from, to: s.to, size: s.power })
         .collect();
     draw(&sankey::svg(&format!("{}: power", model.dae.class), &flows, watts), path, messages)
 }
 
+/// Writes the picture as SVG or PNG, by its name.
 fn draw(svg: &str, path: &Path, messages: &MessageReporter) -> Result<(), CommandFailure> {
     match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
         Some("svg") => files::write(path, svg.as_bytes())?,
@@ -225,11 +243,13 @@ fn draw(svg: &str, path: &Path, messages: &MessageReporter) -> Result<(), Comman
     Ok(())
 }
 
+/// The failure for a picture of another format.
 fn no_picture(path: &Path) -> CommandFailure {
     let text = format!("this picture is written as .svg or .png, not as `{}`", path.display());
     CommandFailure::new(Code::BadArgument, text)
 }
 
+/// A power as text: W below 10 kW, else kW.
 fn watts(power: f64) -> String {
     if power.abs() >= 1e4 {
         format!("{} kW", number::rounded(power / 1e3, 4))
@@ -238,10 +258,12 @@ fn watts(power: f64) -> String {
     }
 }
 
+/// The power into each component as text, then the sum of the sources and what remains.
 fn balance_words(budgets: &[PowerBalance]) -> String {
     let mut out = String::from("power into components, positive is lost or stored\n");
     let most = budgets.iter().map(|b| b.net.abs()).fold(0.0, f64::max);
     let width = budgets.iter().map(|b| b.component.len()).max().unwrap_or(0);
+    // Components that exchange no power would only lengthen the list.
     for b in budgets.iter().filter(|b| b.ports.iter().any(|p| p.1.abs() > 1e-9 * most)) {
         let ports: Vec<String> = b.ports.iter().map(|(n, p)| format!("{n} {}", watts(*p))).collect();
         out += &format!("  {:width$}  {:>12}   ({})\n", b.component, watts(b.net), ports.join(", "));

@@ -1,4 +1,8 @@
-//! A study with its compiled model, as `identify` needs it.
+//! Opens a study with its compiled model for `bramah identify`.
+//!
+//! A study file enters; a [`StudySession`] leaves, from which recordings are read by their role. Study and model have
+//! separate source texts, so each message must be printed with the right ones. The functions here switch the sources of
+//! the reporter.
 
 use std::path::{Path, PathBuf};
 
@@ -10,18 +14,21 @@ use bramah_solve::lower::LoweringOptions;
 use bramah_syntax::diag::{Diagnostic, Sources, StageResult};
 use bramah_syntax::world::DiskWorld;
 
-/// A study tied to its model.
+/// A study whose names are tied to the variables of its compiled model.
 pub(super) struct StudySession {
-    /// The model.
+    /// The compiled model.
     pub model: CompiledModel,
-    /// The study.
+    /// The study with its columns and parameters tied to variables.
     pub bound: BoundStudy,
-    /// The texts of the study and its recordings.
+    /// The texts of the study and its recordings, into which their diagnostics point.
     sources: Sources,
+    /// The folder of the recordings; `None` for that of the study.
     data: Option<PathBuf>,
 }
 
-/// Reads a study, compiles its model and ties both together. Recordings are read relative to `data`.
+/// Reads a study, compiles its model and ties both together. `data` is the folder of the recordings.
+///
+/// `Err`: the study or the model has errors, or the names do not fit.
 pub(super) fn open(
     path: &Path,
     data: Option<&Path>,
@@ -38,7 +45,7 @@ pub(super) fn open(
 }
 
 impl StudySession {
-    /// Reads the recordings of one role.
+    /// Reads the recordings of one role. `Err`: a file or column cannot be used.
     pub fn load(
         &mut self,
         role: RecordingRole,
@@ -48,14 +55,14 @@ impl StudySession {
         said(checked, &self.sources, messages)
     }
 
-    /// A failure whose places lie in the study or its recordings.
+    /// A failure whose diagnostics point into the study or its recordings.
     pub fn failure(&self, diagnostics: Vec<Diagnostic>, messages: &mut MessageReporter) -> CommandFailure {
         messages.sources = self.sources.clone();
         CommandFailure { diagnostics }
     }
 }
 
-/// Says remarks and warnings about texts of the study and hands out the value, or fails.
+/// Prints warnings that point into the texts of the study and returns the value. `Err` when there are errors.
 fn said<T>(checked: StageResult<T>, sources: &Sources, messages: &mut MessageReporter) -> Result<T, CommandFailure> {
     messages.sources = sources.clone();
     messages.value(checked)

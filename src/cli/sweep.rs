@@ -1,4 +1,10 @@
-//! `bramah sweep`
+//! `bramah sweep`: runs one model many times with varied parameters and collects the results in a table.
+//!
+//! An experiment file with a section `[sweep]` enters; a CSV or Parquet table and an optional picture leave. With
+//! `--merge`, tables of parts enter and one table leaves.
+//!
+//! Runs are distributed over all cores with rayon. A mutex guards the open file and the collected rows. Each finished
+//! run appends a line at once, so that an interrupted sweep continues with the open runs.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -65,12 +71,17 @@ pub(super) struct SweepArgs {
     jobs: Option<u16>,
 }
 
+/// Parses `--part K/N`. `Err` is the text that clap shows.
 fn part(text: &str) -> Result<(usize, usize), String> {
     let both = text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
     both.filter(|&(k, n): &(usize, usize)| k >= 1 && k <= n)
         .ok_or_else(|| "K/N is expected, with 1 <= K <= N".to_owned())
 }
 
+/// Runs the subcommand.
+///
+/// Failed runs are rows with their reason and give no error. `Err`: the model or the experiment is wrong, a file cannot
+/// be written, or the sweep was interrupted.
 pub(super) fn run(args: &SweepArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     if let Some(path) = &args.output_file {
         files::ending(path, "a table of runs", &["csv", "parquet"])?;
@@ -92,6 +103,7 @@ pub(super) fn run(args: &SweepArgs, messages: &mut MessageReporter) -> Result<Co
         external: Vec::new(),
         deny_warnings: false,
     };
+    // Checked before the runs, which may take hours.
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
     let experiment = model_args.experiment(None, messages)?;
     let Some(sweep) = experiment.sweep.clone() else {
@@ -106,12 +118,14 @@ pub(super) fn run(args: &SweepArgs, messages: &mut MessageReporter) -> Result<Co
     report(args, &sweep, &plan, &table, &output, messages)
 }
 
+/// Parses `NAME=VALUE` of `--set`. `Err`: there is no `=`.
 fn assignment(text: &str) -> Result<(String, String), CommandFailure> {
     let wrong = || CommandFailure::new(Code::BadArgument, format!("`--set {text}`: NAME=VALUE is expected"));
     let (name, value) = text.split_once('=').ok_or_else(wrong)?;
     Ok((name.trim().to_owned(), value.trim().to_owned()))
 }
 
+/// The file of the table. A part without a given name gets its numbers: `press.3-of-10.csv`.
 fn output(args: &SweepArgs, file: &str) -> PathBuf {
     let whole = args.output_file.clone().unwrap_or_else(|| Path::new(file).with_extension("csv"));
     match args.part {
@@ -120,6 +134,7 @@ fn output(args: &SweepArgs, file: &str) -> PathBuf {
     }
 }
 
+/// The settings of each run. `Err`: a pattern of the variables matches nothing.
 fn settings(
     args: &SweepArgs,
     experiment: &ExperimentSpecification,
@@ -134,6 +149,7 @@ fn settings(
         tolerance: experiment.relative_tolerance.or(annotation.tolerance),
     });
     settings.wanted.clone_from(&plan.wanted);
+    // Trajectories hold more variables than the results of the sweep need.
     if args.trajectories.is_some() {
         let target = ResultTarget::stdout();
         let more = columns::choose(&model.dae, &experiment.variables, &target)?;
@@ -142,16 +158,18 @@ fn settings(
     Ok(settings)
 }
 
+/// Whether the table is written as Parquet.
 fn is_parquet(path: &Path) -> bool {
     path.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"))
 }
 
-/// The file that takes a line a run: Parquet cannot grow.
+/// The CSV file that takes a line for each finished run. For Parquet it is a CSV beside it, because Parquet cannot
+/// grow.
 fn with_lines(output: &Path) -> PathBuf {
     if is_parquet(output) { output.with_extension("csv") } else { output.to_owned() }
 }
 
-/// The whole table once more as Parquet, where that is wanted.
+/// Writes the complete table as Parquet, when that is asked for.
 fn write_parquet(args: &SweepArgs, table: &SweepTable) -> Result<(), CommandFailure> {
     let Some(path) = args.output_file.as_ref().filter(|path| is_parquet(path)) else { return Ok(()) };
     let mut bytes = Vec::new();
@@ -159,7 +177,9 @@ fn write_parquet(args: &SweepArgs, table: &SweepTable) -> Result<(), CommandFail
     files::write(path, &bytes)
 }
 
-/// The table as far as an earlier start of the same sweep made it.
+/// The table with the rows of an earlier, interrupted start of the same sweep.
+///
+/// A missing file gives the `empty` table. `Err`: the file is no such table, or belongs to another sweep.
 fn resumed(path: &Path, empty: SweepTable) -> Result<SweepTable, CommandFailure> {
     let Ok(text) = std::fs::read_to_string(path) else { return Ok(empty) };
     let other = |why: &str| {
@@ -168,10 +188,14 @@ fn resumed(path: &Path, empty: SweepTable) -> Result<SweepTable, CommandFailure>
     };
     let table = SweepTable::read(&text).map_err(|e| other(&e))?;
     let mut whole = empty;
+    // `merge` compares the fingerprints, so rows of another sweep are refused.
     whole.merge(table).map_err(|e| other(&e))?;
     Ok(whole)
 }
 
+/// Performs the open runs and returns the complete table.
+///
+/// `Err`: the table cannot be written, belongs to another sweep, or the user pressed Ctrl-C.
 fn execute(
     args: &SweepArgs,
     model: &CompiledModel,
@@ -185,11 +209,13 @@ fn execute(
     let mut words = names.clone();
     words.push(model.dae.class.clone());
     words.extend(plan.results.iter().map(|r| format!("{:?}", r.1)));
+    // Everything that changes the results enters the fingerprint.
     words.push(format!("{} {} {}", settings.start_time, settings.stop_time, settings.tolerance));
     words.extend(args.set.iter().cloned());
     let empty = SweepTable::new(fingerprint(&words, &plan.samples), plan.samples.len(), names);
     let mut table = resumed(output, empty)?;
     let (k, n) = args.part.unwrap_or((1, 1));
+    // A part takes every n-th run, so its runs are spread over all samples.
     let all: Vec<usize> = (1..=plan.samples.len()).filter(|run| (run - 1) % n == k - 1).collect();
     let open: Vec<usize> = all.iter().copied().filter(|run| !table.rows.contains_key(run)).collect();
     if open.len() < all.len() {
@@ -203,7 +229,8 @@ fn execute(
     if let Some(folder) = &args.trajectories {
         std::fs::create_dir_all(folder).map_err(|e| access(folder, "made", &e))?;
     }
-    // what was torn at the end of an interrupted table goes
+    // Rewritten, because the last line may be incomplete after an interruption. A failure here also comes before the
+    // runs.
     files::write(output, table.text().as_bytes())?;
     let appending = std::fs::OpenOptions::new().append(true).open(output).map_err(|e| access(output, "written", &e))?;
     let shared = Mutex::new((appending, Vec::new(), None));
@@ -225,13 +252,17 @@ fn execute(
         let text = format!("interrupted after {} of {} runs", table.rows.len(), all.len());
         return Err(Diagnostic::new(Code::Interrupted, text).help("the same command goes on from here").into());
     }
+    // Lines were appended as runs ended; the complete file has them in order.
     files::write(output, table.text().as_bytes())?;
     Ok(table)
 }
 
+/// The open table, the rows of this start, and the first error of writing; shared by all threads.
 type SweepOutput = Mutex<(std::fs::File, Vec<(usize, (Vec<f64>, String))>, Option<std::io::Error>)>;
 
-/// One run, and its line in the table.
+/// Performs one run and appends its line to the table. `run` counts from 1.
+///
+/// Called on a thread of rayon. The lock is taken only after the run, for writing the line.
 fn one(
     args: &SweepArgs,
     model: &CompiledModel,
@@ -245,12 +276,14 @@ fn one(
         return;
     }
     let outcome = plan.run(model, settings, run - 1, stop);
+    // An interrupted run has no result and is repeated at the next start.
     if stop.load(Ordering::Relaxed) {
         return;
     }
     let (results, status) = match outcome {
         Ok((results, rows)) => {
             let written = args.trajectories.as_ref().map(|folder| trajectory(folder, run, model, settings, &rows));
+            // A trajectory that cannot be written is noted in the column `status`; the results are kept.
             (results, written.and_then(Result::err).map_or_else(|| "ok".to_owned(), |e| e.to_string()))
         }
         Err(why) => (vec![f64::NAN; plan.results.len()], why),
@@ -258,11 +291,13 @@ fn one(
     let values: Vec<f64> = plan.samples[run - 1].iter().copied().chain(results).collect();
     let mut shared = shared.lock().expect("no run panics while it holds the table");
     if let Err(e) = shared.0.write_all(SweepTable::line(run, &values, &status).as_bytes()) {
+        // Only the first error is kept; it is usually the cause of the others.
         shared.2.get_or_insert(e);
     }
     shared.1.push((run, (values, status)));
 }
 
+/// Writes the rows of one run to `run_N.csv`.
 fn trajectory(
     folder: &Path,
     run: usize,
@@ -278,6 +313,7 @@ fn trajectory(
     writer.finish().map(|_| ())
 }
 
+/// Prints the summary, the Sobol indices where the plan has them, and draws the picture.
 fn report(
     args: &SweepArgs,
     sweep: &ParameterSweep,
@@ -290,6 +326,7 @@ fn report(
     let failed = table.rows.values().filter(|r| r.1 != "ok").count();
     let bad = if failed > 0 { format!(", {failed} failed (see the column `status`)") } else { String::new() };
     messages.remark(&format!("{} runs in {}{bad}", table.rows.len(), output.display()));
+    // The indices need every run of the plan, so a part cannot compute them.
     if sweep.method == SamplingMethod::Sobol && table.rows.len() == table.runs {
         files::print(&sobol_words(sweep, plan, table))?;
     }
@@ -301,7 +338,7 @@ fn report(
     Ok(CommandStatus::Fine)
 }
 
-/// First-order and total indices of each result.
+/// First-order and total Sobol indices of each result, with their confidence, as text.
 fn sobol_words(sweep: &ParameterSweep, plan: &SweepPlan, table: &SweepTable) -> String {
     let d = plan.varied.len();
     let mut out = String::new();
@@ -322,6 +359,9 @@ fn sobol_words(sweep: &ParameterSweep, plan: &SweepPlan, table: &SweepTable) -> 
     out
 }
 
+/// Joins the tables of parts. Returns `Wrong` (exit code 1) when runs are missing.
+///
+/// `Err`: a table cannot be read, or the tables belong to different sweeps.
 fn merge(args: &SweepArgs, messages: &MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let Some(output) = &args.output_file else {
         return Err(CommandFailure::new(Code::BadArgument, "--merge needs --output-file for the joined table"));

@@ -1,23 +1,24 @@
-//! Corrections that a message proposes.
+//! Quick fixes: the corrections that diagnostics propose.
 
 use super::lines;
 use bramah_syntax::diag::{Diagnostic, Sources};
 use lsp_types::TextEdit;
 
-/// A correction of a text.
+/// A correction of a text that the user can accept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct QuickFix {
-    /// What it does.
+    /// Title in the editor's menu.
     pub title: String,
-    /// What changes in the file of the message.
+    /// The change of the file.
     pub edit: TextEdit,
 }
 
-/// The correction that a message proposes, in the file in which its primary place is.
+/// The correction that a diagnostic proposes. `None`: it proposes none.
 pub fn correction(sources: &Sources, diagnostic: &Diagnostic) -> Option<QuickFix> {
     let fix = diagnostic.fix.as_ref()?;
     let text = &sources.get(fix.span.file).text;
     let range = lines::range(text, fix.span);
+    // An empty old text is an insertion, an empty new one a removal.
     let title = match (sources.text(fix.span), fix.text.as_str()) {
         ("", new) => format!("Insert `{}`", new.trim()),
         (old, "") => format!("Remove `{}`", old.trim()),

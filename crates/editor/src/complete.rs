@@ -1,4 +1,10 @@
-//! What may be written at a place, found from the words before it: a text that is being written does not parse.
+//! Completion: what may be written at a byte offset.
+//!
+//! A text that is being written does not parse. So the tokens before the offset are read instead of a syntax tree:
+//! [`CompletionContext`] notes the begun word, the dotted names before it and the open brackets. Classes and elements
+//! are then looked up in the library.
+//!
+//! `signature` and `hover` use the same context.
 
 use super::{DocumentView, words};
 use bramah_model::resolve::names::{self, MemberComponent, NameTarget};
@@ -10,14 +16,14 @@ use bramah_syntax::symbol::Symbol;
 use bramah_syntax::token::{Token, TokenKind};
 use lsp_types::{CompletionItem, CompletionItemKind, Documentation, MarkupContent, MarkupKind};
 
-/// Units that engineers of such machines write, in the strings of `unit` and `displayUnit`.
+/// Units that are offered in the strings of `unit` and `displayUnit`.
 pub const UNITS: [&str; 40] = [
     "Pa", "bar", "MPa", "m3/s", "l/min", "m3", "l", "ml", "rad/s", "rev/min", "rad", "deg", "m", "mm", "um", "m/s",
     "mm/s", "m/s2", "N", "kN", "N.m", "kg", "kg.m2", "kg/m3", "s", "ms", "Hz", "W", "kW", "J", "K", "degC", "V", "A",
     "Ohm", "H", "F", "W/K", "J/K", "1",
 ];
 
-/// Attributes of the built-in types.
+/// Attributes of the built-in types with their descriptions.
 const ATTRIBUTES: [(&str, &str); 9] = [
     ("start", "Value at the start"),
     ("fixed", "true: the start value holds at the start"),
@@ -30,6 +36,7 @@ const ATTRIBUTES: [(&str, &str); 9] = [
     ("stateSelect", "Whether it should be a state"),
 ];
 
+/// Keywords that may begin an element.
 const ELEMENT_WORDS: [&str; 18] = [
     "parameter",
     "constant",
@@ -50,64 +57,73 @@ const ELEMENT_WORDS: [&str; 18] = [
     "initial equation",
     "annotation",
 ];
+/// Keywords that may begin an equation.
 const EQUATION_WORDS: [&str; 11] =
     ["connect", "if", "for", "when", "elsewhen", "else", "end", "initial equation", "algorithm", "assert", "reinit"];
+/// Keywords and functions in an expression.
 const EXPRESSION_WORDS: [&str; 24] = [
     "der", "if", "then", "else", "and", "or", "not", "time", "true", "false", "pre", "initial", "noEvent", "smooth",
     "sqrt", "abs", "sign", "sin", "cos", "exp", "log", "min", "max", "sum",
 ];
 
-/// The words before a place.
+/// What the tokens before a byte offset say about the place.
 #[derive(Debug, Default)]
 pub(super) struct CompletionContext {
-    /// The word that has been begun.
+    /// The part of a word between its start and the offset; empty when no word has been begun.
     pub prefix: String,
-    /// `a.b.` before it.
+    /// The names before the word that are joined to it by dots: `a` and `b` in `a.b.`.
     pub chain: Vec<String>,
-    /// The open brackets of the statement, outermost first.
+    /// The open brackets of the present statement, outermost first.
     pub calls: Vec<BracketContext>,
+    /// Whether the offset is in code, a comment or a string.
     place: LexicalRegion,
+    /// The section of the class.
     section: CompletionSection,
-    /// Nothing of the statement stands before the chain.
+    /// The statement has nothing but prefixes before the word.
     begins: bool,
-    /// Nothing of the present argument stands before the chain.
+    /// The argument of the innermost bracket has nothing before the word.
     begins_argument: bool,
 }
 
-/// An open bracket.
+/// An open round bracket.
 #[derive(Debug)]
 pub(super) struct BracketContext {
+    /// What it belongs to.
     head: BracketHead,
-    /// Commas behind it.
+    /// Number of commas in it so far, which is the index of the present argument.
     pub commas: usize,
-    /// The name before the `=` of the present argument.
+    /// The name before `=` in the present argument; `None` when there is no `=`.
     pub named: Option<String>,
 }
 
-/// What stands before a bracket.
+/// What an open bracket belongs to. Paths are dotted names as lists.
 #[derive(Clone, Debug, PartialEq)]
 enum BracketHead {
-    /// `Type name(`
+    /// The modification of a declared component, `Type name(`: its type and its name.
     Element(Vec<String>, String),
-    /// `extends Path(`, `model M = Path(`
+    /// The modification of a class, `extends Path(` or `model M = Path(`.
     Type(Vec<String>),
-    /// `name(` in a modification.
+    /// The modification of an element inside another modification, `name(`.
     Inner(Vec<String>),
-    /// `f(` in an expression.
+    /// The arguments of a function, `f(`.
     Function(Vec<String>),
+    /// The ends of a connection, `connect(`.
     Connect,
+    /// An annotation or an expression in brackets.
     Other,
 }
 
+/// The lexical kind of the place.
 #[derive(Debug, Default, PartialEq)]
 enum LexicalRegion {
     #[default]
     Code,
     Comment,
-    /// In a string, behind `name =`.
+    /// Inside a string. Holds the name before `=`, such as `unit`, if there is one.
     Text(Option<String>),
 }
 
+/// The section of a class, which decides the keywords that are offered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum CompletionSection {
     #[default]
@@ -116,21 +132,26 @@ enum CompletionSection {
 }
 
 impl CompletionContext {
-    /// The words before a byte.
+    /// Reads the tokens before a byte offset.
     pub fn at(text: &str, offset: u32) -> CompletionContext {
+        // The text after the offset does not matter, but a string or word may reach over it.
         let all = lex(FileId(0), text).tokens;
         let before = all.partition_point(|t| t.start < offset && t.kind != TokenKind::Eof);
         let mut tokens = all[..before].to_vec();
         let mut context = CompletionContext::default();
         match tokens.last().copied() {
+            // The offset is inside a complete string.
             Some(last) if last.kind == TokenKind::String && offset < last.end => {
                 tokens.pop();
                 context.place = LexicalRegion::Text(named_before(text, &tokens));
             }
+            // The offset is in or at the end of a word.
             Some(last) if last.end >= offset && (last.kind == TokenKind::Ident || last.kind.is_keyword()) => {
                 context.prefix = text[last.start as usize..offset as usize].to_owned();
                 tokens.pop();
             }
+            // Comments are no tokens, and neither is a string without its end. Both are found in the text after the
+            // last token.
             last => {
                 let gap = &text[last.map_or(0, |t| t.end as usize).min(offset as usize)..offset as usize];
                 let line = gap.rsplit('\n').next().unwrap_or("");
@@ -141,6 +162,7 @@ impl CompletionContext {
                 }
             }
         }
+        // The names before a dot are taken off, so that the rest reads like the start of a name.
         while tokens.last().is_some_and(|t| t.kind == TokenKind::Dot) {
             tokens.pop();
             let (parts, rest) = chain_before(text, &tokens);
@@ -151,11 +173,13 @@ impl CompletionContext {
         context
     }
 
+    /// Reads brackets, section and the beginning of the statement from the tokens before the word.
     fn read(&mut self, text: &str, tokens: &[Token]) {
         let mut depth = 0;
         let (mut start, mut argument) = (0, 0);
         for (i, token) in tokens.iter().enumerate() {
             match token.kind {
+                // The head of a bracket is known only from the tokens of its statement before it.
                 TokenKind::LeftParen => {
                     let head = head(text, &tokens[start..i], self.calls.last().map(|c| &c.head));
                     self.calls.push(BracketContext { head, commas: 0, named: None });
@@ -164,6 +188,7 @@ impl CompletionContext {
                 TokenKind::LeftBracket | TokenKind::LeftBrace => depth += 1,
                 TokenKind::RightBracket | TokenKind::RightBrace => depth -= 1,
                 TokenKind::RightParen => _ = self.calls.pop(),
+                // Commas inside square or curly brackets do not separate arguments.
                 TokenKind::Comma if depth <= 0 => {
                     if let Some(call) = self.calls.last_mut() {
                         call.commas += 1;
@@ -176,6 +201,7 @@ impl CompletionContext {
                         call.named = named_before(text, &tokens[..=i]);
                     }
                 }
+                // A semicolon ends everything: a bracket that is still open was forgotten by the user.
                 TokenKind::Semicolon if self.calls.is_empty() || depth <= 0 => {
                     (start, depth) = (i + 1, 0);
                     self.calls.clear();
@@ -184,11 +210,13 @@ impl CompletionContext {
                     self.section = CompletionSection::Equations;
                     start = i + 1;
                 }
+                // Statements may follow these words as they follow a semicolon.
                 TokenKind::Then | TokenKind::Loop | TokenKind::Else if self.calls.is_empty() => start = i + 1,
                 TokenKind::Protected | TokenKind::Public => {
                     self.section = CompletionSection::Elements;
                     start = i + 1;
                 }
+                // After the end of a nested class, elements of the outer one may follow.
                 TokenKind::End if i == start && tokens.get(i + 1).is_some_and(|t| t.kind == TokenKind::Ident) => {
                     self.section = CompletionSection::Elements;
                 }
@@ -196,6 +224,7 @@ impl CompletionContext {
                 _ => {}
             }
         }
+        // After `model Name` and its description an element begins, although there is no semicolon.
         let rest = &tokens[start..];
         let header = matches!(rest, [class, name] if class.kind.is_class_word() && name.kind == TokenKind::Ident)
             || matches!(rest, [class, name, said] if class.kind.is_class_word() && name.kind == TokenKind::Ident && said.kind == TokenKind::String);
@@ -204,7 +233,9 @@ impl CompletionContext {
             tokens[argument.min(tokens.len())..].iter().all(|t| matches!(t.kind, TokenKind::Each | TokenKind::Final));
     }
 
-    /// The class whose elements are named in the first `n` open brackets.
+    /// The class whose elements are named in the innermost of the first `n` open brackets.
+    ///
+    /// For a function these are its arguments. `None`: it cannot be resolved, or the bracket names no elements.
     pub fn class_of(&self, library: &mut Library<'_>, scope: ClassId, n: usize) -> Option<ClassId> {
         match &self.calls.get(n.checked_sub(1)?)?.head {
             BracketHead::Element(path, _) | BracketHead::Type(path) => named(library, scope, path),
@@ -212,6 +243,7 @@ impl CompletionContext {
                 let target = meant(library, scope, path)?;
                 names::inside(library, target)
             }
+            // The element belongs to the class of the bracket around it.
             BracketHead::Inner(path) => {
                 let around = self.class_of(library, scope, n - 1)?;
                 let target = along(library, around, path)?;
@@ -221,7 +253,7 @@ impl CompletionContext {
         }
     }
 
-    /// Whether a modification's arguments are being written, and the present one has just begun.
+    /// Whether the name of an element to modify is expected: a modification is open and its argument has just begun.
     fn names_elements(&self) -> bool {
         let modifies = |c: &BracketContext| {
             matches!(c.head, BracketHead::Element(..) | BracketHead::Type(_) | BracketHead::Inner(_))
@@ -230,12 +262,15 @@ impl CompletionContext {
     }
 }
 
-/// The full name of the element whose name ends at or after a byte, as the circuit has it.
+/// The full name of the element whose name begins before and ends at or after a byte offset, as in the flat model.
+///
+/// `None`: there is no name at the offset.
 pub(super) fn full_name_at(text: &str, offset: u32) -> Option<String> {
     let rest = &text[offset as usize..];
     let end = offset as usize + rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
     let context = CompletionContext::at(text, end as u32);
     let mut parts: Vec<String> = Vec::new();
+    // In a modification the names of the brackets around belong to the full name.
     if context.names_elements() {
         for call in &context.calls {
             match &call.head {
@@ -250,7 +285,7 @@ pub(super) fn full_name_at(text: &str, offset: u32) -> Option<String> {
     (!parts.iter().any(String::is_empty)).then(|| parts.join("."))
 }
 
-/// What may be written at a byte.
+/// The completions at a byte offset. Empty in comments, and in strings other than those of units.
 pub fn complete(view: &mut DocumentView<'_, '_>, offset: u32) -> Vec<CompletionItem> {
     let context = CompletionContext::at(&view.text, offset);
     match &context.place {
@@ -261,6 +296,7 @@ pub fn complete(view: &mut DocumentView<'_, '_>, offset: u32) -> Vec<CompletionI
         LexicalRegion::Text(_) => return Vec::new(),
         LexicalRegion::Code => {}
     }
+    // A text without any class still gets keywords.
     let Some(scope) = view.class_at(offset) else { return words_for(&context) };
     if context.names_elements() {
         return arguments(view, &context, scope);
@@ -270,6 +306,7 @@ pub fn complete(view: &mut DocumentView<'_, '_>, offset: u32) -> Vec<CompletionI
         return members(view, &context, scope, connects);
     }
     let mut found = in_scope(view, scope, connects);
+    // Inputs of a function may be given by name.
     if let Some(function) = context.class_of(view.library, scope, context.calls.len())
         && context.begins_argument
     {
@@ -279,6 +316,7 @@ pub fn complete(view: &mut DocumentView<'_, '_>, offset: u32) -> Vec<CompletionI
     found
 }
 
+/// Keywords that fit the place.
 fn words_for(context: &CompletionContext) -> Vec<CompletionItem> {
     let words: &[&str] = match (context.begins, context.section) {
         (true, CompletionSection::Elements) => &ELEMENT_WORDS,
@@ -288,7 +326,7 @@ fn words_for(context: &CompletionContext) -> Vec<CompletionItem> {
     words.iter().map(|w| plain(w, CompletionItemKind::KEYWORD)).collect()
 }
 
-/// Elements that a modification may name.
+/// Elements that a modification may name: public ones that are not final. Built-in types get their attributes.
 fn arguments(view: &mut DocumentView<'_, '_>, context: &CompletionContext, scope: ClassId) -> Vec<CompletionItem> {
     let class = context.class_of(view.library, scope, context.calls.len()).and_then(|class| {
         context.chain.iter().try_fold(class, |class, part| {
@@ -300,6 +338,7 @@ fn arguments(view: &mut DocumentView<'_, '_>, context: &CompletionContext, scope
         Some(class) => elements(view, class, |m| !m.protected && !m.component.prefixes.final_),
         None => Vec::new(),
     };
+    // A class without elements is a built-in type, or cannot be resolved.
     if found.is_empty() {
         let items = ATTRIBUTES.iter().map(|(name, said)| CompletionItem {
             documentation: Some(Documentation::String((*said).to_owned())),
@@ -310,7 +349,7 @@ fn arguments(view: &mut DocumentView<'_, '_>, context: &CompletionContext, scope
     found
 }
 
-/// What stands behind a dot.
+/// Completions after a dot. Inside `connect(` only the ports of a component, if it has any.
 fn members(
     view: &mut DocumentView<'_, '_>,
     context: &CompletionContext,
@@ -319,6 +358,7 @@ fn members(
 ) -> Vec<CompletionItem> {
     let Some(target) = meant(view.library, scope, &context.chain) else { return Vec::new() };
     let Some(class) = names::inside(view.library, target) else { return Vec::new() };
+    // From a class only other classes, constants and literals can be named.
     if matches!(target, NameTarget::Class(_)) {
         let mut found = classes(view, class);
         found.extend(elements(view, class, |m| m.component.prefix.variability == Some(VariabilityPrefix::Constant)));
@@ -332,7 +372,9 @@ fn members(
     if ports.is_empty() { elements(view, class, |m| !m.protected) } else { ports }
 }
 
-/// Names that need no dot: elements, those of the classes around, packages at the top.
+/// Names that need no dot: elements of the class, constants and classes of the enclosing ones, packages at the top.
+///
+/// Inside `connect(` only elements that are not of type Real.
 fn in_scope(view: &mut DocumentView<'_, '_>, scope: ClassId, connects: bool) -> Vec<CompletionItem> {
     let mut found = elements(view, scope, |m| !connects || m.component.class.parts[0].name != "Real");
     if connects {
@@ -349,16 +391,19 @@ fn in_scope(view: &mut DocumentView<'_, '_>, scope: ClassId, connects: bool) -> 
     }
     let top = view.library.top_level();
     found.extend(top.iter().map(|name| plain(name.as_str(), CompletionItemKind::MODULE)));
+    // An inner class hides one of the same name around it, and each name is offered once.
     found.sort_by(|a, b| a.label.cmp(&b.label));
     found.dedup_by(|a, b| a.label == b.label);
     found
 }
 
+/// Completions for the classes in a class.
 fn classes(view: &mut DocumentView<'_, '_>, class: ClassId) -> Vec<CompletionItem> {
     let all = names::classes(view.library, class);
     all.into_iter().map(|id| class_item(view.library, id)).collect()
 }
 
+/// The completion for a class, with its description and documentation.
 fn class_item(library: &Library<'_>, id: ClassId) -> CompletionItem {
     let class = library.class(id);
     let kind = match class.kind {
@@ -380,6 +425,7 @@ fn class_item(library: &Library<'_>, id: ClassId) -> CompletionItem {
     }
 }
 
+/// Completions for the elements of a class that `wanted` accepts, inherited ones included.
 fn elements(
     view: &mut DocumentView<'_, '_>,
     class: ClassId,
@@ -388,6 +434,7 @@ fn elements(
     elements_that(view, class, |_, m| wanted(m))
 }
 
+/// As `elements`, with access to the view for the decision.
 fn elements_that(
     view: &mut DocumentView<'_, '_>,
     class: ClassId,
@@ -403,6 +450,7 @@ fn elements_that(
     found
 }
 
+/// The completion for a component, with its declaration and unit. Parameters are sorted first.
 fn element_item<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> CompletionItem {
     let component = member.component;
     let parameter = component.prefix.variability == Some(VariabilityPrefix::Parameter);
@@ -421,15 +469,17 @@ fn element_item<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> C
     }
 }
 
+/// Whether the type of a component is a connector.
 fn is_port(view: &mut DocumentView<'_, '_>, member: &MemberComponent<'_>) -> bool {
     names::type_of(view.library, *member).is_some_and(|class| names::is_connector(view.library, class))
 }
 
+/// A completion with a label and a kind only.
 fn plain(label: &str, kind: CompletionItemKind) -> CompletionItem {
     CompletionItem { label: label.to_owned(), kind: Some(kind), ..CompletionItem::default() }
 }
 
-/// What dotted words stand for in a class.
+/// What a dotted name refers to, looked up from a class outwards. `None`: it cannot be resolved.
 fn meant<'a>(library: &mut Library<'a>, scope: ClassId, path: &[String]) -> Option<NameTarget<'a>> {
     let (first, rest) = path.split_first()?;
     let target = names::lookup(library, scope, Symbol::new(first))?;
@@ -440,6 +490,7 @@ fn meant<'a>(library: &mut Library<'a>, scope: ClassId, path: &[String]) -> Opti
     along(library, class, rest)
 }
 
+/// What a dotted name refers to among the elements of a class.
 fn along<'a>(library: &mut Library<'a>, mut class: ClassId, path: &[String]) -> Option<NameTarget<'a>> {
     let (last, before) = path.split_last()?;
     for part in before {
@@ -449,12 +500,13 @@ fn along<'a>(library: &mut Library<'a>, mut class: ClassId, path: &[String]) -> 
     names::element(library, class, Symbol::new(last))
 }
 
+/// The class with a dotted name, looked up from a class outwards.
 fn named(library: &mut Library<'_>, scope: ClassId, path: &[String]) -> Option<ClassId> {
     let parts: Vec<Symbol> = path.iter().map(|p| Symbol::new(p)).collect();
     names::named(library, Some(scope), &parts, false)
 }
 
-/// `name` of `name =` at the end of some tokens.
+/// The name in `name =` at the end of the tokens; `None` when they end otherwise.
 fn named_before(text: &str, tokens: &[Token]) -> Option<String> {
     match tokens {
         [.., name, equal] if equal.kind == TokenKind::Equal && name.kind == TokenKind::Ident => Some(word(text, name)),
@@ -462,16 +514,18 @@ fn named_before(text: &str, tokens: &[Token]) -> Option<String> {
     }
 }
 
+/// The text of a token.
 fn word(text: &str, token: &Token) -> String {
     text[token.start as usize..token.end as usize].to_owned()
 }
 
-/// The dotted name at the end of some tokens, indices left out, and how many tokens stand before it.
+/// The dotted name at the end of the tokens without its indices, and the number of tokens before it.
 fn chain_before(text: &str, tokens: &[Token]) -> (Vec<String>, usize) {
     let mut parts = Vec::new();
     let mut at = tokens.len();
     loop {
         let mut next = at;
+        // An index is skipped back to its opening bracket.
         if next > 0 && tokens[next - 1].kind == TokenKind::RightBracket {
             let mut depth = 0;
             while next > 0 {
@@ -500,7 +554,7 @@ fn chain_before(text: &str, tokens: &[Token]) -> (Vec<String>, usize) {
     (parts, at)
 }
 
-/// What a bracket behind these tokens of a statement belongs to.
+/// What a bracket after these tokens of a statement belongs to. `around` is the head of the enclosing bracket.
 fn head(text: &str, tokens: &[Token], around: Option<&BracketHead>) -> BracketHead {
     match tokens.last().map(|t| t.kind) {
         Some(TokenKind::Connect) => return BracketHead::Connect,
@@ -515,15 +569,20 @@ fn head(text: &str, tokens: &[Token], around: Option<&BracketHead>) -> BracketHe
     let before = &tokens[..rest];
     match before.last().map(|t| t.kind) {
         Some(TokenKind::Extends | TokenKind::Constrainedby) => BracketHead::Type(path),
+        // Two names in a row are a type and a component: `Type name(`.
         Some(TokenKind::Ident | TokenKind::RightBracket) if path.len() == 1 => {
             BracketHead::Element(chain_before(text, before).0, path.into_iter().next().unwrap_or_default())
         }
+        // `model M = Path(`.
         Some(TokenKind::Equal) if matches!(before, [.., class, _, _] if class.kind.is_class_word()) => {
             BracketHead::Type(path)
         }
+        // Inside a modification a name before a bracket is modified further, not called.
         Some(TokenKind::LeftParen | TokenKind::Comma | TokenKind::Each | TokenKind::Final) if modifies => {
             BracketHead::Inner(path)
         }
+        // A further component of the same declaration: `Type a(..), b(`. The type comes from the start of the
+        // statement.
         Some(TokenKind::Comma) if around.is_none() => {
             let words = tokens.iter().skip_while(|t| t.kind != TokenKind::Ident);
             let first: Vec<Token> =
@@ -538,6 +597,7 @@ fn head(text: &str, tokens: &[Token], around: Option<&BracketHead>) -> BracketHe
     }
 }
 
+/// Whether a token is a prefix that may stand before an element's type.
 fn is_prefix(kind: TokenKind) -> bool {
     use TokenKind as T;
     let of_type = matches!(kind, T::Parameter | T::Constant | T::Discrete | T::Input | T::Output | T::Flow | T::Stream);

@@ -1,4 +1,7 @@
-//! Values behind what is written: `V = 10 ml` where the text has an expression or a number in SI units.
+//! Inlay hints: values and units shown behind the parameters of a text, such as `V = 10 ml`.
+//!
+//! [`ParameterHints`] stores the values of models that the background check has compiled. [`hints`] puts them behind
+//! the bindings in a file, where the text has an expression or a number in SI units.
 
 use super::DocumentView;
 use bramah_circuit::compiled::CompiledModel;
@@ -10,24 +13,30 @@ use bramah_syntax::ast::{ElementKind, Expr, Modification, ModificationArgument, 
 use lsp_types::{InlayHint, InlayHintLabel};
 use rustc_hash::FxHashMap;
 
-/// What compiled models say of their parameters, by class and by the parameter's full name.
+/// Values of parameters of compiled models.
 #[derive(Clone, Debug, Default)]
 pub struct ParameterHints {
+    /// By full class name, then by the full name of the parameter.
     models: FxHashMap<String, FxHashMap<String, HintValue>>,
 }
 
+/// The value of one parameter.
 #[derive(Clone, Debug)]
 struct HintValue {
+    /// In `unit`.
     value: f64,
+    /// Unit of the model; empty when there is none.
     unit: String,
+    /// Unit for display; empty when there is none.
     display: String,
 }
 
 impl ParameterHints {
-    /// Takes the parameters of a model in place of those that it had.
+    /// Stores the parameters of a model and replaces those of an earlier version.
     pub fn learn(&mut self, model: &CompiledModel) {
         let system = &model.system;
         let mut values = system.layout.values();
+        // Parameters may depend on others, so they are evaluated before they are read.
         system.evaluate_parameters(&mut values, &[]);
         let known = model.flat.variables.iter().enumerate().filter(|(_, v)| v.variability <= Variability::Parameter);
         let all = known.map(|(i, v)| {
@@ -38,13 +47,15 @@ impl ParameterHints {
         self.models.insert(model.flat.class.clone(), all.collect());
     }
 
-    /// The value of a parameter of a model, with its unit, and in the unit in which it is shown.
+    /// The value of a parameter in its unit, followed by the value in its display unit. `None`: the model or parameter
+    /// is not known.
     pub fn value(&self, model: &str, name: &str) -> Option<String> {
         Some(self.models.get(model)?.get(name)?.shown(true))
     }
 }
 
 impl HintValue {
+    /// The value as text. With `both`, the value in the unit of the model comes first.
     fn shown(&self, both: bool) -> String {
         let plain = format!("{} {}", bramah_results::number::text(self.value), self.unit).trim().to_owned();
         match self.converted() {
@@ -54,18 +65,20 @@ impl HintValue {
         }
     }
 
+    /// The value in its display unit. `None`: there is no other display unit, or it does not fit.
     fn converted(&self) -> Option<String> {
         if self.display.is_empty() || self.display == self.unit {
             return None;
         }
         let (from, to) = (MeasurementUnit::parse(&self.unit).ok()?, MeasurementUnit::parse(&self.display).ok()?);
         let value = from.convert(self.value, &to)?;
+        // Conversion adds digits that mean nothing, such as 9.999999999 bar.
         let rounded: f64 = format!("{value:.5e}").parse().ok()?;
         Some(format!("{} {}", bramah_results::number::text(rounded), self.display))
     }
 }
 
-/// Hints behind the values of parameters in a file.
+/// The hints of a file, behind the bindings of its models.
 pub fn hints(view: &mut DocumentView<'_, '_>, facts: &ParameterHints) -> Vec<InlayHint> {
     let mut found = Vec::new();
     for id in view.classes.clone() {
@@ -74,6 +87,7 @@ pub fn hints(view: &mut DocumentView<'_, '_>, facts: &ParameterHints) -> Vec<Inl
     found
 }
 
+/// Adds the hints of one class, if it has been compiled as a model.
 fn of_class(view: &DocumentView<'_, '_>, id: ClassId, facts: &ParameterHints, found: &mut Vec<InlayHint>) {
     let Some(values) = facts.models.get(&view.library.full_name(id)) else { return };
     let Some(body) = bramah_model::resolve::names::body(view.library.class(id)) else { return };
@@ -91,6 +105,7 @@ fn of_class(view: &DocumentView<'_, '_>, id: ClassId, facts: &ParameterHints, fo
     }
 }
 
+/// Adds the hint of a binding and those of the modifiers in its brackets. `name` is the full name in the model.
 fn modification(
     view: &DocumentView<'_, '_>,
     values: &FxHashMap<String, HintValue>,
@@ -105,6 +120,7 @@ fn modification(
     modification.arguments.iter().for_each(|a| argument(view, values, name, a, found));
 }
 
+/// Adds the hints of one modifier. `around` is the full name of the component; empty in an extends clause.
 fn argument(
     view: &DocumentView<'_, '_>,
     values: &FxHashMap<String, HintValue>,
@@ -118,12 +134,14 @@ fn argument(
     }
 }
 
-/// A number in its own unit needs none.
+/// Adds one hint. A number without a unit needs none, since the text shows it already.
 fn hint(view: &DocumentView<'_, '_>, value: &HintValue, written: &Expr, found: &mut Vec<InlayHint>) {
     let is_number = written.as_number().is_some();
+    // An inherited binding may come from another file.
     if is_number && value.unit.is_empty() || written.span.file != view.file {
         return;
     }
+    // A number is in the text, so only its unit is added; an expression gets its value.
     let label = match (is_number, value.converted()) {
         (true, None) => value.unit.clone(),
         (true, Some(text)) => format!("{} = {text}", value.unit),

@@ -1,4 +1,4 @@
-//! What is said under the pointer: declaration, unit, value in the circuit, documentation.
+//! The text shown when the pointer rests on a name: declaration, unit, value in the circuit, documentation.
 
 use super::hints::ParameterHints;
 use super::navigate::occurrence_at;
@@ -6,7 +6,9 @@ use super::{DocumentView, words};
 use bramah_model::resolve::names::NameTarget;
 use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind};
 
-/// What the name at a byte stands for.
+/// The hover text of the name at a byte offset, as Markdown. `None`: there is no name, or it cannot be resolved.
+///
+/// `facts` has the parameter values of compiled models.
 pub fn hover(view: &mut DocumentView<'_, '_>, offset: u32, facts: &ParameterHints) -> Option<Hover> {
     let occurrence = occurrence_at(view, offset)?;
     let target = occurrence.target?;
@@ -26,6 +28,7 @@ pub fn hover(view: &mut DocumentView<'_, '_>, offset: u32, facts: &ParameterHint
         text.push_str(said);
         text.push('\n');
     }
+    // The value depends on the model around the name, not on the class that declares it.
     let model = view.library.full_name(occurrence.scope);
     if let Some(value) = path_at(view, offset).and_then(|path| facts.value(&model, &path)) {
         text.push_str(&format!("\nHere `{value}`\n"));
@@ -39,11 +42,12 @@ pub fn hover(view: &mut DocumentView<'_, '_>, offset: u32, facts: &ParameterHint
     Some(Hover { contents, range: Some(view.range(occurrence.ident.span)) })
 }
 
+/// A line as a Modelica code block.
 fn code(line: &str) -> String {
     format!("```modelica\n{line}\n```\n")
 }
 
-/// The full name of the element at a byte as the circuit has it: of `V` in `pump(V = 1)`, `pump.V`.
+/// The full name of the element at a byte offset, as in the flat model: `pump.V` for `V` in `pump(V = 1)`.
 fn path_at(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<String> {
     super::complete::full_name_at(&view.text, offset)
 }

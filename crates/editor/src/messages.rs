@@ -1,4 +1,7 @@
-//! What is said of a file: every model in it goes the way of `check`.
+//! The diagnostics of a file: syntax errors at once, and those of all stages for each of its models.
+//!
+//! [`of_syntax`] only parses and answers between two keystrokes. [`of_models`] compiles each runnable model as `bramah
+//! check` does and runs on the background thread. Both return diagnostics of the protocol, with quick fixes.
 
 use super::actions::{QuickFix, correction};
 use super::hints::ParameterHints;
@@ -11,21 +14,21 @@ use bramah_syntax::diag::{Code, Diagnostic, FileId, Severity, Sources};
 use lsp_types::{DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString, Range, Uri};
 use std::path::{Path, PathBuf};
 
-/// More models of one file are not looked at while it is edited.
+/// Models of one file that are compiled while it is edited. More would delay the answer too long.
 const MOST_MODELS: usize = 12;
 
-/// A message in a file, with the correction it proposes.
+/// A diagnostic of a file, with the correction that it proposes.
 #[derive(Clone, Debug)]
 pub struct FileDiagnostic {
-    /// The file.
+    /// The file that it is shown in.
     pub path: PathBuf,
-    /// As editors know it.
+    /// The diagnostic in the form of the protocol.
     pub diagnostic: lsp_types::Diagnostic,
-    /// The change of the text that it proposes.
+    /// The change of the text that it proposes. `None`: it proposes none.
     pub correction: Option<QuickFix>,
 }
 
-/// What the parser says.
+/// The syntax errors of a text.
 pub fn of_syntax(path: &Path, text: &str) -> Vec<FileDiagnostic> {
     let mut sources = Sources::default();
     let file = sources.add(path.display().to_string(), text);
@@ -33,7 +36,10 @@ pub fn of_syntax(path: &Path, text: &str) -> Vec<FileDiagnostic> {
     parsed.diagnostics.iter().filter_map(|d| message(&sources, d, path, &no_link)).collect()
 }
 
-/// What the pipeline says of the models in a file, in turn; `go_on` is asked before each.
+/// The diagnostics of all models in a file, of all stages.
+///
+/// `link` gives the URI of a file for related places. `facts` takes the parameter values of each compiled model.
+/// `go_on` is asked before each model; when it returns false, the diagnostics found so far are returned.
 pub fn of_models(
     texts: &EditorWorkspace<'_>,
     path: &Path,
@@ -49,15 +55,19 @@ pub fn of_models(
             return found;
         }
         let one = Request { model: Some(name.clone()), ..request.clone() };
+        // Machine code would only cost time here, as the model is not run.
         let outcome = compile(texts.world, &one, &LoweringOptions::INTERPRETED);
         if let Some(model) = &outcome.value {
             facts.learn(model);
         }
+        // Whether the ports matter is looked up only when there is such a diagnostic.
         let unsure = outcome.diagnostics.iter().any(|d| hangs_on_use(d.code, ConnectorKind::Flows));
         let ports = if unsure { ports(texts, path, &name) } else { ConnectorKind::None };
         for diagnostic in outcome.diagnostics.iter().filter(|d| !hangs_on_use(d.code, ports)) {
             let Some(message) = message(&outcome.sources, diagnostic, path, link) else { continue };
+            // Models of one file share components and so their diagnostics.
             let same = |m: &FileDiagnostic| m.path == message.path && m.diagnostic == message.diagnostic;
+            // The user cannot change files that ship.
             if !is_shipped(&message.path) && !found.iter().any(same) {
                 found.push(message);
             }
@@ -66,9 +76,10 @@ pub fn of_models(
     found
 }
 
-/// What a class is joined by where it is used.
+/// The kind of connectors through which a class is used in others.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum ConnectorKind {
+    /// The class has none: it is a complete model.
     None,
     /// Inputs and outputs.
     Signals,
@@ -76,6 +87,7 @@ enum ConnectorKind {
     Flows,
 }
 
+/// The kind of connectors that a class has. Connectors with flows outrank signals.
 fn ports(texts: &EditorWorkspace<'_>, path: &Path, name: &str) -> ConnectorKind {
     let found = texts.look(path, |view| {
         let id = view.library.find(name)?;
@@ -91,7 +103,10 @@ fn ports(texts: &EditorWorkspace<'_>, path: &Path, name: &str) -> ConnectorKind 
     found.flatten().unwrap_or(ConnectorKind::None)
 }
 
-/// What is said only because ports of a component are open: its use decides.
+/// Whether a diagnostic arises only because the ports of a component are open.
+///
+/// A component with ports is not complete by itself, so missing equations or start values are no mistakes there. Its
+/// use in a circuit decides.
 fn hangs_on_use(code: Code, ports: ConnectorKind) -> bool {
     let id = code.id();
     let structure = code == Code::OpenPort || id.starts_with("E3") || id.starts_with("E4");
@@ -99,17 +114,19 @@ fn hangs_on_use(code: Code, ports: ConnectorKind) -> bool {
     ports == ConnectorKind::Flows && structure || ports >= ConnectorKind::Signals && start
 }
 
+/// No URI, for diagnostics without related places.
 fn no_link(_: &Path) -> Option<Uri> {
     None
 }
 
+/// Converts a diagnostic. `asked` is the file that was checked.
 fn message(
     sources: &Sources,
     d: &Diagnostic,
     asked: &Path,
     link: &dyn Fn(&Path) -> Option<Uri>,
 ) -> Option<FileDiagnostic> {
-    // a place in the file asked about, if there is one
+    // A diagnostic may point into several files. A place in the file that the user edits is preferred.
     let shown = asked.display().to_string();
     let primary = d.labels.iter().find(|l| sources.get(l.span.file).path == shown).or(d.labels.first());
     let (path, range) = match primary {
@@ -117,9 +134,11 @@ fn message(
             let source = sources.get(label.span.file);
             (PathBuf::from(&source.path), lines::range(&source.text, label.span))
         }
+        // Without a place it is shown at the start of the file.
         None => (asked.to_path_buf(), Range::default()),
     };
     let mut text = d.message.clone();
+    // The text of the label is often the message itself.
     if let Some(label) = primary.filter(|l| !l.text.is_empty() && !d.message.contains(&l.text)) {
         text.push_str(&format!("\n{}", label.text));
     }
@@ -132,6 +151,7 @@ fn message(
         })
         .collect();
     Some(FileDiagnostic {
+        // A fix in another file than the diagnostic cannot be offered as its quick fix.
         correction: correction(sources, d)
             .filter(|_| d.fix.as_ref().is_some_and(|f| sources.get(f.span.file).path == path.display().to_string())),
         path,
@@ -151,6 +171,7 @@ fn message(
     })
 }
 
+/// A further place of a diagnostic. `None`: its file has no URI.
 fn related(
     sources: &Sources,
     file: FileId,

@@ -1,4 +1,9 @@
-//! Every name of a text with what it stands for: what definition, references, renaming and colours are made of.
+//! Finds the names in a class with what they refer to; definition, references, renaming and colours build on it.
+//!
+//! A class and a filter enter; a list of [`NameOccurrence`] leaves. The syntax tree is walked once. A name is resolved
+//! only when the filter wants it, because resolving may load other files.
+//!
+//! `scope` is, throughout, the class in which names are looked up.
 
 use bramah_model::resolve::names::{self, NameTarget};
 use bramah_model::resolve::{ClassId, Library};
@@ -8,20 +13,20 @@ use bramah_syntax::ast::{
     Statement, StatementKind, Subscript,
 };
 
-/// A name at a place.
+/// One name in a text.
 #[derive(Clone, Copy, Debug)]
 pub struct NameOccurrence<'a> {
-    /// The word and where it stands.
+    /// The identifier with its place.
     pub ident: Ident,
-    /// What it stands for; `None` for built-in names and for what is not there.
+    /// What it refers to. `None` for built-in names and names that cannot be resolved.
     pub target: Option<NameTarget<'a>>,
-    /// Whether it is declared here.
+    /// It is the declaration itself, not a use.
     pub declares: bool,
     /// The class around it.
     pub scope: ClassId,
 }
 
-/// The names in a class that are wanted, in the order of the syntax tree.
+/// The wanted names in a class and its nested classes, in the order of the syntax tree.
 pub fn of_class<'a>(
     library: &mut Library<'a>,
     id: ClassId,
@@ -32,7 +37,7 @@ pub fn of_class<'a>(
     walk.found
 }
 
-/// The names behind `within` in the file of a class.
+/// The wanted names in the `within` clause of the file of a class.
 pub fn of_within<'a>(
     library: &mut Library<'a>,
     id: ClassId,
@@ -40,6 +45,7 @@ pub fn of_within<'a>(
 ) -> Vec<NameOccurrence<'a>> {
     let file = library.class(id).span.file;
     let text = &library.sources.get(file).text;
+    // Only the text up to the first semicolon is parsed, since the clause comes first.
     let head = text.find(';').map_or("", |end| &text[..=end]);
     let Some(path) = bramah_syntax::parse(file, head).tree.within else { return Vec::new() };
     let mut found = Vec::new();
@@ -51,26 +57,29 @@ pub fn of_within<'a>(
     found
 }
 
-/// Whose elements a modifier names; made out only where it is asked for.
+/// The class whose elements a modifier names. It is resolved only when a name in the modifier is wanted.
 #[derive(Clone, Copy)]
 enum ModifierTarget<'a, 'c> {
-    /// Those of a class, named in another.
+    /// The class of this name, looked up in another class.
     Type(ClassId, &'a Path),
-    /// Those of an element of what is modified around it.
+    /// The class of an element of the enclosing modifier's class.
     Element(&'c ModifierTarget<'a, 'c>, &'a Path),
-    /// Those of a class that has been found.
+    /// A class that is resolved already.
     Class(ClassId),
 }
 
+/// The walk over a syntax tree.
 struct OccurrenceFinder<'l, 'a> {
     library: &'l mut Library<'a>,
+    /// Which names are wanted.
     wanted: &'l dyn Fn(&Ident) -> bool,
     found: Vec<NameOccurrence<'a>>,
-    /// Variables of the loops around.
+    /// Variables of the enclosing loops, innermost last.
     locals: Vec<Ident>,
 }
 
 impl<'a> OccurrenceFinder<'_, 'a> {
+    /// Adds a wanted name and resolves it.
     fn add(&mut self, scope: ClassId, ident: Ident, target: impl FnOnce(&mut Self) -> Option<NameTarget<'a>>) {
         if (self.wanted)(&ident) {
             let target = target(self);
@@ -78,12 +87,14 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// Adds a wanted declaration.
     fn declare(&mut self, scope: ClassId, ident: Ident, target: NameTarget<'a>) {
         if (self.wanted)(&ident) {
             self.found.push(NameOccurrence { ident, target: Some(target), declares: true, scope });
         }
     }
 
+    /// Walks a class.
     fn class(&mut self, id: ClassId) {
         let class: &'a Class = self.library.class(id);
         self.declare(id, class.name, NameTarget::Class(id));
@@ -104,6 +115,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
                 self.end_name(id, class);
             }
             ClassBody::Short { base, subscripts, modification, .. } => {
+                // The base of a short class is looked up around it: in `type T = T2`, `T2` is not an element of `T`.
                 let around = self.library.parent(id).unwrap_or(id);
                 self.path(around, base);
                 self.subscripts(around, subscripts);
@@ -118,17 +130,19 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
-    /// The name after `end`.
+    /// Adds the name after `end`, which the syntax tree does not keep. Its place follows from the end of the class.
     fn end_name(&mut self, id: ClassId, class: &Class) {
         let name = class.name.name;
         let length = name.as_str().len() as u32;
         let mut span = class.span;
         span.start = span.end.saturating_sub(length);
+        // The name must lie behind the declaring one and match, else the class ends in another way.
         if span.start > class.name.span.end && self.library.sources.text(span) == name.as_str() {
             self.declare(id, Ident { name, span }, NameTarget::Class(id));
         }
     }
 
+    /// Walks an element of a class.
     fn element(&mut self, scope: ClassId, kind: &'a ElementKind) {
         match kind {
             ElementKind::Import(import) => self.import(scope, import),
@@ -137,6 +151,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
                 self.modification(scope, ModifierTarget::Type(scope, base), modification.as_ref());
             }
             ElementKind::Class(class) => {
+                // Nested classes get their own number, as their names are looked up in them.
                 let id = self.library.enter(class, Some(scope));
                 self.class(id);
             }
@@ -147,6 +162,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// Adds the declaration of a component.
     fn declared(&mut self, scope: ClassId, component: &'a ComponentDeclaration) {
         if (self.wanted)(&component.name)
             && let Some(target) = names::element(self.library, scope, component.name.name)
@@ -155,7 +171,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
-    /// All of a component but its name.
+    /// Walks everything of a component but its name: type, subscripts, modifiers, condition, constraint.
     fn component(&mut self, scope: ClassId, component: &'a ComponentDeclaration) {
         self.path(scope, &component.class);
         self.subscripts(scope, &component.subscripts);
@@ -168,6 +184,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// Adds the names of an import. They are looked up from the top level.
     fn import(&mut self, scope: ClassId, import: &'a Import) {
         match import {
             Import::Single { path, .. } | Import::All(path) => self.dotted(scope, path, true),
@@ -181,13 +198,15 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
-    /// The name of a class, part by part.
+    /// Adds each part of a class name.
     fn path(&mut self, scope: ClassId, path: &'a Path) {
         self.dotted(scope, path, path.global);
     }
 
+    /// Adds each part of a dotted name; `global` looks it up from the top level.
     fn dotted(&mut self, scope: ClassId, path: &'a Path, global: bool) {
         for (i, part) in path.parts.iter().enumerate() {
+            // The first `i` parts together name the class that part `i` refers to.
             self.add(scope, *part, |w| {
                 let parts: Vec<_> = path.parts[..=i].iter().map(|p| p.name).collect();
                 names::named(w.library, Some(scope), &parts, global).map(NameTarget::Class)
@@ -195,6 +214,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// Walks a modification of the class `of`.
     fn modification(&mut self, scope: ClassId, of: ModifierTarget<'a, '_>, modification: Option<&'a Modification>) {
         let Some(modification) = modification else { return };
         for argument in &modification.arguments {
@@ -203,9 +223,11 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         modification.value.iter().for_each(|e| self.expression(scope, e));
     }
 
+    /// Walks one argument of a modification of the class `of`.
     fn argument(&mut self, scope: ClassId, of: ModifierTarget<'a, '_>, argument: &'a ModificationArgument) {
         match &argument.kind {
             ModificationArgumentKind::Modify { path, modification, .. } => {
+                // A dotted name `a.b = 1` modifies an element of an element.
                 for (i, part) in path.parts.iter().enumerate() {
                     self.add(scope, *part, |w| w.element_of(of, &path.parts[..=i]));
                 }
@@ -230,6 +252,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// The element that a dotted name refers to in the class `of`.
     fn element_of(&mut self, of: ModifierTarget<'a, '_>, parts: &[Ident]) -> Option<NameTarget<'a>> {
         let mut class = self.modified(of)?;
         let (last, before) = parts.split_last()?;
@@ -240,6 +263,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         names::element(self.library, class, last.name)
     }
 
+    /// Resolves the class of a modifier. `None`: it cannot be resolved.
     fn modified(&mut self, of: ModifierTarget<'a, '_>) -> Option<ClassId> {
         match of {
             ModifierTarget::Type(scope, path) => names::resolve(self.library, scope, path),
@@ -251,6 +275,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// Walks subscripts; a colon has no names.
     fn subscripts(&mut self, scope: ClassId, subscripts: &'a [Subscript]) {
         for subscript in subscripts {
             if let Subscript::Expr(e) = subscript {
@@ -259,6 +284,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// Adds each part of a component reference.
     fn reference(&mut self, scope: ClassId, reference: &'a ComponentReference) {
         for (i, part) in reference.parts.iter().enumerate() {
             self.add(scope, part.name, |w| w.meant(scope, reference, i));
@@ -266,9 +292,10 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
-    /// What the parts of a reference up to one stand for.
+    /// What part `last` of a reference refers to.
     fn meant(&mut self, scope: ClassId, reference: &ComponentReference, last: usize) -> Option<NameTarget<'a>> {
         let first = reference.parts[0].name;
+        // Loop variables hide elements of the class; the innermost one wins.
         let local = self.locals.iter().rev().find(|l| l.name == first.name && !reference.global);
         let mut target = match local {
             Some(local) => NameTarget::Iterator(*local),
@@ -282,16 +309,19 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         Some(target)
     }
 
+    /// Walks an expression.
     fn expression(&mut self, scope: ClassId, e: &'a Expr) {
         match &e.kind {
             ExprKind::Reference(reference) => self.reference(scope, reference),
             ExprKind::Call { function, args, named } => {
                 self.reference(scope, function);
                 args.iter().for_each(|a| self.expression(scope, a));
+                // Named arguments are inputs of the called function.
                 self.named(scope, |w| w.meant(scope, function, function.parts.len() - 1), named);
             }
             ExprKind::Comprehension { function, body, iterators } => {
                 function.iter().for_each(|f| self.reference(scope, f));
+                // The loop variables of a comprehension are known in its body only.
                 self.within(scope, iterators, |w| w.expression(scope, body));
             }
             ExprKind::PartialApplication { function, named } => {
@@ -303,7 +333,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
-    /// Arguments that name an input of a function.
+    /// Adds named arguments of a call. `function` resolves the function that they belong to.
     fn named(
         &mut self,
         scope: ClassId,
@@ -320,9 +350,11 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// Walks the body of a loop with its variables declared.
     fn within(&mut self, scope: ClassId, iterators: &'a [ForIndex], body: impl FnOnce(&mut Self)) {
         let outside = self.locals.len();
         for iterator in iterators {
+            // A range is walked before its variable is declared, as it cannot use it.
             iterator.range.iter().for_each(|r| self.expression(scope, r));
             self.locals.push(iterator.name);
             self.declare(scope, iterator.name, NameTarget::Iterator(iterator.name));
@@ -331,6 +363,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         self.locals.truncate(outside);
     }
 
+    /// Walks equations.
     fn equations(&mut self, scope: ClassId, equations: &'a [Equation]) {
         for equation in equations {
             match &equation.kind {
@@ -351,6 +384,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
+    /// Walks statements.
     fn statements(&mut self, scope: ClassId, statements: &'a [Statement]) {
         for statement in statements {
             match &statement.kind {
@@ -380,7 +414,7 @@ impl<'a> OccurrenceFinder<'_, 'a> {
         }
     }
 
-    /// Conditions with what they guard.
+    /// Walks conditions and the equations or statements that depend on them.
     fn branches<T>(
         &mut self,
         scope: ClassId,

@@ -1,4 +1,7 @@
-//! The outline of a file, and what can be folded.
+//! The outline of a file, and the ranges that can be folded.
+//!
+//! The outline is made from the syntax tree. Folding is made from the tokens alone, so that it still works in a text
+//! with syntax errors.
 
 use super::lines::LineIndex;
 use super::{DocumentView, words};
@@ -9,12 +12,13 @@ use bramah_syntax::lexer::lex;
 use bramah_syntax::token::TokenKind;
 use lsp_types::{DocumentSymbol, FoldingRange, SymbolKind};
 
-/// Classes and components of a file, inside each other.
+/// The classes and components of a file as a tree. Classes that the library loaded from other files are left out.
 pub fn symbols(view: &DocumentView<'_, '_>) -> Vec<DocumentSymbol> {
     let own = view.classes.iter().map(|&id| view.library.class(id)).filter(|class| class.span.file == view.file);
     own.map(|class| symbol(view, class)).collect()
 }
 
+/// The outline entry of a class with its elements.
 fn symbol(view: &DocumentView<'_, '_>, class: &Class) -> DocumentSymbol {
     let children = match &class.body {
         ClassBody::Long(body) => body.elements.iter().filter_map(|e| element(view, &e.kind, e.span)).collect(),
@@ -32,6 +36,7 @@ fn symbol(view: &DocumentView<'_, '_>, class: &Class) -> DocumentSymbol {
     made(view, class.name, class.span, kind, class.description.as_deref(), children)
 }
 
+/// The outline entry of an element. `None` for imports and extends clauses, which declare no name.
 fn element(view: &DocumentView<'_, '_>, kind: &ElementKind, span: bramah_syntax::diag::Span) -> Option<DocumentSymbol> {
     match kind {
         ElementKind::Class(class) => Some(symbol(view, class)),
@@ -39,6 +44,7 @@ fn element(view: &DocumentView<'_, '_>, kind: &ElementKind, span: bramah_syntax:
             let kind = match component.prefix.variability {
                 Some(VariabilityPrefix::Constant) => SymbolKind::CONSTANT,
                 Some(VariabilityPrefix::Parameter) => SymbolKind::PROPERTY,
+                // Types with a single name are mostly built-in, such as `Real`.
                 _ if component.class.parts.len() == 1 => SymbolKind::VARIABLE,
                 _ => SymbolKind::OBJECT,
             };
@@ -49,6 +55,7 @@ fn element(view: &DocumentView<'_, '_>, kind: &ElementKind, span: bramah_syntax:
     }
 }
 
+/// An outline entry. `span` covers the declaration, the span of `name` is what the editor selects.
 #[allow(deprecated, reason = "the protocol's struct has a field of that kind")]
 fn made(
     view: &DocumentView<'_, '_>,
@@ -70,7 +77,7 @@ fn made(
     }
 }
 
-/// Classes, blocks and brackets of several lines.
+/// The ranges of classes, blocks and brackets that span several lines.
 pub fn folds(text: &str) -> Vec<FoldingRange> {
     let lines = LineIndex::new(text);
     let mut found = Vec::new();
@@ -83,16 +90,20 @@ pub fn folds(text: &str) -> Vec<FoldingRange> {
     let tokens = lex(FileId(0), text).tokens;
     let mut blocks = BlockNesting::default();
     let (mut brackets, mut levels) = (Vec::new(), Vec::new());
+    // A fold begins where the statement that opens the block begins, not at the keyword.
     let mut statement = 0;
     for (i, token) in tokens.iter().enumerate().take_while(|(_, t)| t.kind != TokenKind::Eof) {
+        // Between statements the next token begins a new one.
         if blocks.is_between() {
             statement = token.start;
         }
+        // The depth tells below whether this token opened or closed a block.
         let before = blocks.depth;
         blocks.pass(&tokens, i);
         match token.kind {
             TokenKind::LeftParen | TokenKind::LeftBracket | TokenKind::LeftBrace => brackets.push(token.start),
             TokenKind::RightParen | TokenKind::RightBracket | TokenKind::RightBrace => {
+                // A bracket without a partner is ignored, as the text may be incomplete.
                 brackets.pop().into_iter().for_each(|start| add(start, token.start));
             }
             _ if blocks.depth > before => levels.push(statement),

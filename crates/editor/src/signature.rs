@@ -1,4 +1,4 @@
-//! The inputs of the function, or the parameters of the component, whose brackets are being written.
+//! Signature help: the inputs of the function, or the parameters of the component, in whose brackets the cursor stands.
 
 use super::complete::CompletionContext;
 use super::{DocumentView, words};
@@ -6,12 +6,15 @@ use bramah_model::resolve::names::{self, NameTarget};
 use bramah_syntax::ast::{CausalityPrefix, VariabilityPrefix};
 use lsp_types::{Documentation, ParameterInformation, ParameterLabel, SignatureHelp, SignatureInformation};
 
-/// Help for the innermost bracket before a byte.
+/// Help for the innermost open bracket before a byte offset.
+///
+/// `None`: no bracket is open, or its function or class cannot be resolved.
 pub fn help(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<SignatureHelp> {
     let context = CompletionContext::at(&view.text, offset);
     let call = context.calls.last()?;
     let scope = view.class_at(offset)?;
     let class = context.class_of(view.library, scope, context.calls.len())?;
+    // A function shows its inputs, a component its public parameters.
     let function = words::is_function(view.library, class);
     let wanted = |m: &names::MemberComponent<'_>| match function {
         true => m.component.prefix.causality == Some(CausalityPrefix::Input),
@@ -24,8 +27,10 @@ pub fn help(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<SignatureHel
         if i > 0 {
             label.push_str(", ");
         }
+        // The protocol marks a parameter by UTF-16 offsets in the label.
         let start = label.encode_utf16().count() as u32;
         label.push_str(
+            // The prefixes are the same for all entries and would only lengthen the line.
             &words::declaration(view.library, member.component).replace("input ", "").replace("parameter ", ""),
         );
         let end = label.encode_utf16().count() as u32;
@@ -38,6 +43,7 @@ pub fn help(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<SignatureHel
     }
     label.push(')');
     let named = call.named.as_deref();
+    // A named argument is found by its name. By position only functions can be called; modifiers are always named.
     let active = match named {
         Some(name) => members.iter().position(|m| m.component.name.name == name),
         None => function.then_some(call.commas),

@@ -1,4 +1,7 @@
-//! Colours by meaning: types, parameters, variables, functions.
+//! Semantic tokens: the meaning of each name, by which an editor colours it.
+//!
+//! The names of a file come from `occurrences`. They leave in the protocol's form, each relative to the token before
+//! it.
 
 use super::DocumentView;
 use super::occurrences::{self, NameOccurrence};
@@ -7,7 +10,7 @@ use bramah_model::resolve::names::NameTarget;
 use bramah_syntax::ast::{ClassKind, VariabilityPrefix};
 use lsp_types::{SemanticToken, SemanticTokenModifier, SemanticTokenType};
 
-/// The types that are used, in the order of their numbers.
+/// The token types, in the order of their numbers. The server announces this list.
 pub const TYPES: [SemanticTokenType; 8] = [
     SemanticTokenType::NAMESPACE,
     SemanticTokenType::CLASS,
@@ -19,15 +22,17 @@ pub const TYPES: [SemanticTokenType; 8] = [
     SemanticTokenType::ENUM_MEMBER,
 ];
 
-/// Modifiers, in the order of their bits.
+/// The token modifiers, in the order of their bits.
 pub const MODIFIERS: [SemanticTokenModifier; 2] = [SemanticTokenModifier::DECLARATION, SemanticTokenModifier::READONLY];
 
-/// All names of a file with what they mean, as differences from one to the next.
+/// All names of a file with their meaning. Names that cannot be resolved are left out.
 pub fn tokens(view: &mut DocumentView<'_, '_>) -> Vec<SemanticToken> {
     let file = view.file;
+    // Classes of a package may come from several files.
     let own = |ident: &bramah_syntax::ast::Ident| ident.span.file == file;
     let mut found: Vec<NameOccurrence<'_>> =
         view.classes.clone().into_iter().flat_map(|id| occurrences::of_class(view.library, id, &own)).collect();
+    // The protocol demands the order of the text and each token once.
     found.sort_by_key(|o| o.ident.span.start);
     found.dedup_by_key(|o| o.ident.span.start);
     let mut before = lsp_types::Position::new(0, 0);
@@ -39,9 +44,11 @@ pub fn tokens(view: &mut DocumentView<'_, '_>) -> Vec<SemanticToken> {
         let start = range.start.character;
         out.push(SemanticToken {
             delta_line,
+            // On the same line the column is relative to the last token, on a new line it is absolute.
             delta_start: if delta_line == 0 { start - before.character } else { start },
             length: range.end.character.saturating_sub(start),
             token_type,
+            // The order of the bits is that of `MODIFIERS`.
             token_modifiers_bitset: u32::from(occurrence.declares) | (u32::from(readonly) << 1),
         });
         before = range.start;
@@ -49,7 +56,7 @@ pub fn tokens(view: &mut DocumentView<'_, '_>) -> Vec<SemanticToken> {
     out
 }
 
-/// The number in [`TYPES`], and whether it is constant.
+/// The index in [`TYPES`] for a target, and whether it is constant.
 fn kind(library: &Library<'_>, target: NameTarget<'_>) -> Option<(u32, bool)> {
     Some(match target {
         NameTarget::Class(id) => match library.class(id).kind {
@@ -61,6 +68,7 @@ fn kind(library: &Library<'_>, target: NameTarget<'_>) -> Option<(u32, bool)> {
         NameTarget::Component(member) => match member.component.prefix.variability {
             Some(VariabilityPrefix::Constant) => (4, true),
             Some(VariabilityPrefix::Parameter) => (4, false),
+            // A single type name is mostly a built-in type, so this is a variable and not a component.
             _ if member.component.class.parts.len() == 1 => (5, false),
             _ => (6, false),
         },

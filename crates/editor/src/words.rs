@@ -1,4 +1,5 @@
-//! What the words of a declaration say, as text for people.
+//! Texts about declarations for hover, completion and signatures: the line of a declaration, descriptions,
+//! documentation.
 
 use bramah_model::resolve::names::{self, MemberComponent, NameTarget};
 use bramah_model::resolve::{ClassId, Library};
@@ -7,7 +8,7 @@ use bramah_syntax::ast::{
     ModificationArgumentKind, TypePrefix, VariabilityPrefix,
 };
 
-/// An attribute that is a text, such as `unit`.
+/// A string attribute of a component, such as `unit`. `None`: it is not declared, or not a string literal.
 pub(super) fn attribute<'a>(library: &mut Library<'a>, member: MemberComponent<'a>, name: &str) -> Option<String> {
     match &names::attribute(library, member, name)?.kind {
         ExprKind::String(text) => Some(text.to_string()),
@@ -15,7 +16,9 @@ pub(super) fn attribute<'a>(library: &mut Library<'a>, member: MemberComponent<'
     }
 }
 
-/// `parameter SI.Volume V = 1e-5`, as declared but for brackets.
+/// The declaration of a component as one line, such as `parameter SI.Volume V = 1e-5`.
+///
+/// Modifiers in brackets are left out, and array sizes are shown as colons.
 pub(super) fn declaration(library: &Library<'_>, component: &ComponentDeclaration) -> String {
     let mut out = prefixes(&component.prefixes, &component.prefix);
     out.push_str(&component.class.dotted());
@@ -33,6 +36,7 @@ pub(super) fn declaration(library: &Library<'_>, component: &ComponentDeclaratio
     out
 }
 
+/// The prefixes in the order in which Modelica demands them, each followed by a blank.
 fn prefixes(all: &ElementPrefixes, prefix: &TypePrefix) -> String {
     let words = [
         (all.final_, "final "),
@@ -50,14 +54,14 @@ fn prefixes(all: &ElementPrefixes, prefix: &TypePrefix) -> String {
     words.iter().filter(|(is_there, _)| *is_there).map(|(_, word)| *word).collect()
 }
 
-/// `model Hydraulic.Pump`
+/// The head of a class as one line, such as `model Hydraulic.Pump`.
 pub(super) fn class_line(library: &Library<'_>, id: ClassId) -> String {
     let class = library.class(id);
     let partial = if class.prefixes.partial { "partial " } else { "" };
     format!("{partial}{} {}", class.kind.word(), library.full_name(id))
 }
 
-/// The description of what is declared.
+/// The description string of a declaration. `None`: it has none, or is a loop variable.
 pub(super) fn description<'a>(library: &Library<'a>, target: NameTarget<'a>) -> Option<&'a str> {
     match target {
         NameTarget::Class(id) => library.class(id).description.as_deref(),
@@ -67,7 +71,7 @@ pub(super) fn description<'a>(library: &Library<'a>, target: NameTarget<'a>) -> 
     }
 }
 
-/// The text of `Documentation(info = ...)`.
+/// The HTML text of the annotation `Documentation(info = ...)` of a class. `None`: it has none.
 pub(super) fn documentation<'a>(library: &Library<'a>, id: ClassId) -> Option<&'a str> {
     let annotation = library.class(id).annotation.as_ref()?;
     let info = inner(inner(annotation, "Documentation")?, "info")?;
@@ -77,6 +81,7 @@ pub(super) fn documentation<'a>(library: &Library<'a>, id: ClassId) -> Option<&'
     }
 }
 
+/// The modification of the element `name` among the arguments of another one.
 fn inner<'m>(modification: &'m Modification, name: &str) -> Option<&'m Modification> {
     modification.arguments.iter().find_map(|a| match &a.kind {
         ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => Some(m),
@@ -84,12 +89,14 @@ fn inner<'m>(modification: &'m Modification, name: &str) -> Option<&'m Modificat
     })
 }
 
-/// HTML of a documentation as Markdown, roughly: paragraphs, lists, code.
+/// Converts the HTML of a documentation to Markdown. Only paragraphs, lists, code, emphasis, headings and tables are
+/// kept in rough form.
 pub(super) fn markdown(html: &str) -> String {
     let mut out = String::new();
     let mut rest = html;
     while let Some(at) = rest.find('<') {
         out.push_str(&entities(&rest[..at]));
+        // Documentation that is being written may end inside a tag.
         let Some(end) = rest[at..].find('>') else { break };
         let tag = rest[at + 1..at + end].split_whitespace().next().unwrap_or("").to_lowercase();
         out.push_str(match tag.as_str() {
@@ -105,6 +112,7 @@ pub(super) fn markdown(html: &str) -> String {
         rest = &rest[at + end + 1..];
     }
     out.push_str(&entities(rest));
+    // Several empty lines become one, since tags and line breaks of the source both add some.
     let mut lines = Vec::new();
     for line in out.lines().map(str::trim) {
         if !(line.is_empty() && lines.last().is_none_or(|l: &&str| l.is_empty())) {
@@ -114,11 +122,13 @@ pub(super) fn markdown(html: &str) -> String {
     lines.join("\n").trim_end().to_owned()
 }
 
+/// Replaces the common HTML entities.
 fn entities(text: &str) -> String {
+    // `&amp;` comes last, so that `&amp;lt;` becomes `&lt;` and not `<`.
     text.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&nbsp;", " ").replace("&amp;", "&")
 }
 
-/// Whether elements of a class are its inputs.
+/// Whether a class is a function, whose arguments are its inputs.
 pub(super) fn is_function(library: &Library<'_>, id: ClassId) -> bool {
     matches!(library.class(id).kind, ClassKind::Function { .. })
 }

@@ -1,4 +1,9 @@
-//! `modelDescription.xml`, by the schemas of FMI 2.0.5 and 3.0.2.
+//! Writes `modelDescription.xml` by the schemas of FMI 2.0.5 and 3.0.2.
+//!
+//! An [`FmiInterface`] enters, the text of the file leaves; `bramah export` calls [`write`]. The two versions name
+//! elements and attributes differently, and version 2 counts variables from 1 where version 3 uses value references.
+//!
+//! The order of the elements follows the schemas, which prescribe it.
 
 use super::interface::{FmiCausality, FmiInterface, FmiVariable, ModelExchangeRole};
 use bramah_expr::units::MeasurementUnit;
@@ -7,10 +12,11 @@ use bramah_results::{Kind, number};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-/// The name of the library in `binaries/`, and of the functions' prefix.
+/// The model identifier: the name of the library in the folder `binaries/`, and the prefix of its functions where the
+/// standard uses one.
 pub const IDENTIFIER: &str = "bramah";
 
-/// Which standard.
+/// Version of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmiVersion {
     /// FMI 2.0
@@ -19,8 +25,9 @@ pub enum FmiVersion {
     Three,
 }
 
-/// Writes the description. `token` marks this unit and its texts. There is no date in it: the same circuit gives the same
-/// unit.
+/// Writes the description.
+///
+/// `token` ties the description to the packed texts. No date is written, so that the same circuit gives the same bytes.
 pub fn write(interface: &FmiInterface, version: FmiVersion, token: &str, description: &str) -> String {
     let three = version == FmiVersion::Three;
     let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
@@ -35,6 +42,7 @@ pub fn write(interface: &FmiInterface, version: FmiVersion, token: &str, descrip
         env!("CARGO_PKG_VERSION"),
         if three { String::new() } else { format!(" numberOfEventIndicators=\"{}\"", interface.indicators().len()) },
     );
+    // Model Exchange is left out where the model needs its own integrator.
     if interface.alone.is_none() {
         let needless =
             if three { "needsCompletedIntegratorStep=\"false\"" } else { "completedIntegratorStepNotNeeded=\"true\"" };
@@ -59,6 +67,7 @@ pub fn write(interface: &FmiInterface, version: FmiVersion, token: &str, descrip
         "  <DefaultExperiment startTime=\"{start}\" stopTime=\"{stop}\" tolerance=\"{tolerance}\" stepSize=\"{interval}\"/>"
     );
     out.push_str("  <ModelVariables>\n");
+    // The time is the first variable of both versions and has the value reference 0.
     if three {
         out.push_str(
             "    <Float64 name=\"time\" valueReference=\"0\" causality=\"independent\" variability=\"continuous\"/>\n",
@@ -75,13 +84,14 @@ pub fn write(interface: &FmiInterface, version: FmiVersion, token: &str, descrip
     out
 }
 
-/// A description on one line.
+/// A text on one line, escaped for an attribute.
 fn line(text: &str) -> String {
     escape(&text.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
-/// Units as powers of the base units, and the units for people as factors of them.
+/// Writes the units of all Real variables: each as powers of the base units, with its display units.
 fn units(out: &mut String, interface: &FmiInterface) {
+    // Sorted maps, so that the order does not depend on a hash.
     let mut all: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
     for signal in interface.ports.iter().map(|p| &p.signal).filter(|s| !s.unit.is_empty() && s.kind == Kind::Real) {
         let shown = all.entry(&signal.unit).or_default();
@@ -94,6 +104,7 @@ fn units(out: &mut String, interface: &FmiInterface) {
     }
     out.push_str("  <UnitDefinitions>\n");
     for (name, shown) in all {
+        // A unit that cannot be parsed is still declared, because variables refer to it.
         let Ok(unit) = MeasurementUnit::parse(name) else {
             let _ = writeln!(out, "    <Unit name=\"{}\"/>", escape(name));
             continue;
@@ -116,10 +127,10 @@ fn units(out: &mut String, interface: &FmiInterface) {
     out.push_str("  </UnitDefinitions>\n");
 }
 
-/// Attributes of a `BaseUnit`: exponents that are not 0, factor and offset.
+/// The attributes of a `BaseUnit`: exponents other than 0, factor and offset. Empty for fractional exponents.
 fn base(unit: &MeasurementUnit) -> String {
     let mut out = String::new();
-    // the standard has whole exponents only
+    // The standard has whole exponents only.
     let Some(exponents) = unit.exponents() else { return out };
     for (name, exponent) in ["kg", "m", "s", "A", "K", "mol", "cd", "rad"].iter().zip(exponents) {
         if exponent != 0 {
@@ -136,12 +147,14 @@ fn base(unit: &MeasurementUnit) -> String {
     out
 }
 
-/// `other = factor*unit + offset`.
+/// Factor and offset of `other = factor*unit + offset`. `None`: the units are of different kinds.
 fn linear(unit: &MeasurementUnit, other: &MeasurementUnit) -> Option<(f64, f64)> {
+    // Two points determine the line.
     let offset = unit.convert(0.0, other)?;
     Some((unit.convert(1.0, other)? - offset, offset))
 }
 
+/// Writes the enumeration types that variables use, each once.
 fn types(out: &mut String, interface: &FmiInterface, three: bool) {
     let mut seen = BTreeSet::new();
     let mut text = String::new();
@@ -152,6 +165,7 @@ fn types(out: &mut String, interface: &FmiInterface, three: bool) {
             continue;
         }
         let items: String =
+            // Items count from 1, as literals do in Modelica.
             (1..).zip(literals).map(|(k, l)| format!("<Item name=\"{}\" value=\"{k}\"/>", escape(l))).collect();
         let _ = match three {
             true => writeln!(text, "    <EnumerationType name=\"{name}\">{items}</EnumerationType>"),
@@ -163,16 +177,18 @@ fn types(out: &mut String, interface: &FmiInterface, three: bool) {
     }
 }
 
-/// Enumerations with the same literals are one type.
+/// The name of an enumeration type. Enumerations with the same literals share one.
 fn type_name(literals: &[String]) -> String {
     escape(&format!("enumeration({})", literals.join(", ")))
 }
 
-/// Causality, variability and `initial`.
+/// The attributes `causality`, `variability` and `initial` of a variable.
 fn words(port: &FmiVariable) -> (&'static str, &'static str, Option<&'static str>) {
+    // Only Real variables may change between events.
     let varies = if port.signal.kind == Kind::Real { "continuous" } else { "discrete" };
     match port.causality {
         FmiCausality::Parameter => ("parameter", "fixed", Some("exact")),
+        // The standard allows `fixed` for parameters that cannot change after the initialization.
         FmiCausality::Calculated => ("calculatedParameter", "fixed", Some("calculated")),
         FmiCausality::Input => ("input", varies, None),
         FmiCausality::Output => ("output", varies, Some("calculated")),
@@ -180,6 +196,7 @@ fn words(port: &FmiVariable) -> (&'static str, &'static str, Option<&'static str
     }
 }
 
+/// The attributes that all types of variables have. `reference` is the value reference.
 fn head(port: &FmiVariable, reference: usize) -> String {
     let (causality, variability, initial) = words(port);
     let mut out = format!(
@@ -195,7 +212,7 @@ fn head(port: &FmiVariable, reference: usize) -> String {
     out
 }
 
-/// Unit, limits and start value of a number.
+/// The attributes of a number: type, unit, limits and start value.
 fn number_attributes(port: &FmiVariable) -> String {
     let signal = &port.signal;
     let mut out = String::new();
@@ -204,6 +221,7 @@ fn number_attributes(port: &FmiVariable) -> String {
     }
     if signal.kind == Kind::Real && !signal.unit.is_empty() {
         let _ = write!(out, " unit=\"{}\"", escape(&signal.unit));
+        // A display unit is named only when it was declared with the unit above.
         let known = MeasurementUnit::parse(&signal.unit).ok().zip(MeasurementUnit::parse(&signal.display_unit).ok());
         let other = !signal.display_unit.is_empty() && signal.display_unit != signal.unit;
         if other && known.is_some_and(|(u, d)| u.convert(0.0, &d).is_some()) {
@@ -211,6 +229,7 @@ fn number_attributes(port: &FmiVariable) -> String {
         }
     }
     let whole = signal.kind != Kind::Real;
+    // Limits of integers are 32-bit numbers in the schema.
     let largest = if whole { f64::from(i32::MAX) } else { LARGEST };
     for (name, limit) in [("min", port.min), ("max", port.max)] {
         if let Some(limit) = limit.filter(|l| l.abs() < largest) {
@@ -223,13 +242,15 @@ fn number_attributes(port: &FmiVariable) -> String {
     out
 }
 
-/// Limits beyond this say nothing.
+/// Limits of larger magnitude are not written.
 const LARGEST: f64 = 1e300;
 
+/// A number as text; `whole` for integers and enumerations.
 fn text(value: f64, whole: bool) -> String {
     if whole { format!("{}", value as i64) } else { number::text(value) }
 }
 
+/// A variable in the form of FMI 3.
 fn variable_3(port: &FmiVariable, reference: usize) -> String {
     let head = head(port, reference);
     match port.signal.kind {
@@ -240,10 +261,11 @@ fn variable_3(port: &FmiVariable, reference: usize) -> String {
     }
 }
 
+/// A variable in the form of FMI 2.
 fn variable_2(port: &FmiVariable, reference: usize) -> String {
     let head = head(port, reference);
     let inner = match port.signal.kind {
-        // the time comes first
+        // The time is variable 1 of FMI 2, so the first variable of the interface is number 2.
         Kind::Real => format!("<Real{}{}/>", number_attributes(port), derivative(port, 2)),
         Kind::Integer => format!("<Integer{}/>", number_attributes(port)),
         Kind::Enumeration(_) => format!("<Enumeration{}/>", number_attributes(port)),
@@ -252,11 +274,13 @@ fn variable_2(port: &FmiVariable, reference: usize) -> String {
     format!("    <ScalarVariable {head}>{inner}</ScalarVariable>\n")
 }
 
+/// The start attribute of a Boolean.
 fn boolean_start(port: &FmiVariable) -> String {
     port.start.map_or_else(String::new, |s| format!(" start=\"{}\"", s != 0.0))
 }
 
-/// Names the state of a derivative, where the first variable has this number.
+/// The attribute that names the state of a derivative; empty for other variables. `first` is the number of the first
+/// variable.
 fn derivative(port: &FmiVariable, first: usize) -> String {
     match port.role {
         ModelExchangeRole::Rate(state) => format!(" derivative=\"{}\"", state + first),
@@ -264,12 +288,15 @@ fn derivative(port: &FmiVariable, first: usize) -> String {
     }
 }
 
-/// Outputs, derivatives, and what is computed at the start; what they depend on is left open, which means everything.
+/// Writes the model structure: outputs, derivatives and initial unknowns.
+///
+/// Dependencies are left out, which means that each unknown depends on everything.
 fn structure(out: &mut String, interface: &FmiInterface, three: bool) {
     let indexed = || interface.ports.iter().zip(1_usize..);
     let outputs: Vec<usize> = indexed().filter(|(p, _)| p.causality == FmiCausality::Output).map(|(_, i)| i).collect();
     let rates: Vec<usize> = interface.rates().iter().map(|i| i + 1).collect();
     let is_state = |i: usize| interface.ports.iter().any(|p| p.role == ModelExchangeRole::Rate(i - 1));
+    // States are computed at the initialization, so they are initial unknowns too.
     let unknown = |p: &FmiVariable, i: usize| {
         matches!(p.causality, FmiCausality::Output | FmiCausality::Calculated) || rates.contains(&i) || is_state(i)
     };
@@ -285,7 +312,7 @@ fn structure(out: &mut String, interface: &FmiInterface, three: bool) {
         list("EventIndicator", &indicators);
         return;
     }
-    // indices of FMI 2 count from 1, and the time comes first
+    // FMI 2 counts variables from 1 and the time comes first, so all indices are larger by one.
     let list = |name: &str, items: &[usize]| match items {
         [] => String::new(),
         items => {

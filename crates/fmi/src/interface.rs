@@ -1,71 +1,74 @@
-//! What a unit shows of its model: the list that the description names and the library answers for.
+//! The variables of a unit: which there are, in which order, and what they may be used for.
+//!
+//! A compiled `Simulation` enters, an [`FmiInterface`] leaves. The description lists it and the runtime library answers
+//! by it. Both derive it from the same texts, so the value references agree.
 
 use bramah_circuit::Parameter;
 use bramah_circuit::Simulation;
 use bramah_results::{GlobPatterns, Kind, Signal};
 use rustc_hash::FxHashSet;
 
-/// What a variable is for.
+/// The causality of a variable in the sense of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmiCausality {
-    /// May be set before the start.
+    /// May be set before the start of a run.
     Parameter,
-    /// A parameter that others decide, or on which the structure of the model depends.
+    /// A parameter that others determine, or on which the structure of the model depends. It cannot be set.
     Calculated,
-    /// Set from outside during a run.
+    /// Set by the importing tool during a run.
     Input,
-    /// Meant for others.
+    /// Offered to other models.
     Output,
-    /// Anything else.
+    /// Any other variable; may be read.
     Local,
 }
 
-/// A variable of the unit. Its value reference is its index plus 1; 0 is the time.
+/// A variable of a unit. Its value reference is its index in the list plus 1; 0 is the time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FmiVariable {
     /// Name, units, description, type.
     pub signal: Signal,
-    /// What it is for.
+    /// What it may be used for.
     pub causality: FmiCausality,
-    /// The value before the start, of parameters and inputs.
+    /// The value before the start in the unit of the signal. `None` for variables that are computed.
     pub start: Option<f64>,
-    /// Least value.
+    /// Lower limit; `None` when there is none.
     pub min: Option<f64>,
-    /// Greatest value.
+    /// Upper limit; `None` when there is none.
     pub max: Option<f64>,
-    /// What it is of Model Exchange.
+    /// Its role in Model Exchange.
     pub role: ModelExchangeRole,
 }
 
-/// What a variable is of Model Exchange.
+/// The role of a variable in Model Exchange, where the importing tool integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelExchangeRole {
-    /// Nothing in particular, or a state.
+    /// No special role, or a state.
     Plain,
-    /// The derivative of the state at this place in the list.
+    /// The derivative of the state with this index in the list of variables.
     Rate(usize),
-    /// A function whose change of sign is an event, by its number.
+    /// The event indicator with this number: an event occurs where it changes its sign.
     Indicator(usize),
 }
 
-/// All of them.
+/// All variables of a unit, with its default experiment.
 #[derive(Clone, Debug)]
 pub struct FmiInterface {
-    /// The class.
+    /// Full name of the class.
     pub class: String,
     /// Variables in the order of their value references.
     pub ports: Vec<FmiVariable>,
-    /// Start and stop time, interval (s), relative tolerance.
+    /// Start time, stop time and output interval in seconds, and the relative tolerance.
     pub experiment: [f64; 4],
-    /// Why there is no Model Exchange; `None` where there is.
+    /// Why Model Exchange is not offered. `None`: it is.
     pub alone: Option<&'static str>,
 }
 
 impl FmiInterface {
-    /// What a compiled model shows. Outputs are the model's own, and those of its variables that `outputs` names.
+    /// The variables of a compiled model. Outputs are the model's own and those that a pattern of `outputs` matches.
     ///
     /// # Errors
-    /// The pattern that no variable matches.
+    /// The first pattern that matches no variable.
     pub fn new(simulation: &Simulation, outputs: &[String]) -> Result<Self, String> {
         let wanted = GlobPatterns::new(outputs);
         let variables = simulation.variables();
@@ -76,10 +79,12 @@ impl FmiInterface {
         let own = simulation.outputs();
         let is_output = |s: &Signal| own.contains(&s.name) || wanted.matches(&s.name);
         let mut ports: Vec<FmiVariable> = simulation.parameters().into_iter().map(parameter).collect();
+        // Parameters, inputs, other variables, then those of Model Exchange: the order is part of the value references.
         ports.extend(inputs.iter().map(|s| FmiVariable {
             start: simulation.start_of(&s.name).ok(),
             ..FmiVariable::new(s.clone(), FmiCausality::Input)
         }));
+        // Inputs are among the variables too and must not appear twice.
         let seen: FxHashSet<&str> = inputs.iter().map(|s| s.name.as_str()).collect();
         let others = variables.iter().filter(|s| !seen.contains(s.name.as_str()));
         ports.extend(others.map(|s| {
@@ -94,30 +99,33 @@ impl FmiInterface {
         Ok(FmiInterface { class: simulation.model().flat.class.clone(), ports, experiment, alone })
     }
 
-    /// Places of derivatives, in the order of the states.
+    /// Indices of the derivatives, in the order of the states.
     pub fn rates(&self) -> Vec<usize> {
         self.places(|role| matches!(role, ModelExchangeRole::Rate(_)))
     }
 
-    /// Places of the functions whose change of sign is an event.
+    /// Indices of the event indicators.
     pub fn indicators(&self) -> Vec<usize> {
         self.places(|role| matches!(role, ModelExchangeRole::Indicator(_)))
     }
 
+    /// Indices of the variables whose role `is` accepts.
     fn places(&self, is: impl Fn(ModelExchangeRole) -> bool) -> Vec<usize> {
         self.ports.iter().enumerate().filter(|(_, p)| is(p.role)).map(|(i, _)| i).collect()
     }
 }
 
 impl FmiVariable {
+    /// A variable without start value, limits and role.
     fn new(signal: Signal, causality: FmiCausality) -> Self {
         FmiVariable { signal, causality, start: None, min: None, max: None, role: ModelExchangeRole::Plain }
     }
 }
 
-/// Adds what Model Exchange passes on: states that are hidden, derivatives, and functions that watch for events.
+/// Adds the variables of Model Exchange: hidden states, derivatives of all states, and event indicators.
 fn exchanged(simulation: &Simulation, ports: &mut Vec<FmiVariable>) {
     let states = simulation.states();
+    // The derivative of a state must refer to a variable of the description, so hidden states are added first.
     for state in &states {
         if !ports.iter().any(|p| p.signal.name == state.name) {
             ports.push(FmiVariable::new(state.clone(), FmiCausality::Local));
@@ -130,6 +138,7 @@ fn exchanged(simulation: &Simulation, ports: &mut Vec<FmiVariable>) {
             "1" => "1/s".to_owned(),
             unit => format!("{unit}/s"),
         };
+        // A unit with two slashes would be ambiguous, so the derivative gets none.
         let unit = if unit.matches('/').count() > 1 { String::new() } else { unit };
         let signal = Signal { name: format!("der({})", state.name), unit, kind: Kind::Real, ..Signal::default() };
         ports.push(FmiVariable { role: ModelExchangeRole::Rate(at), ..FmiVariable::new(signal, FmiCausality::Local) });
@@ -143,6 +152,7 @@ fn exchanged(simulation: &Simulation, ports: &mut Vec<FmiVariable>) {
     }
 }
 
+/// A parameter. It can be set only when no other parameter determines it and the structure does not depend on it.
 fn parameter(p: Parameter) -> FmiVariable {
     let settable = p.root && !p.structural;
     let causality = if settable { FmiCausality::Parameter } else { FmiCausality::Calculated };

@@ -1,8 +1,11 @@
-//! A circuit as a functional mock-up unit (FMI 2.0.5 and 3.0.2, Co-Simulation and Model Exchange).
+//! Describes a circuit as a functional mock-up unit (FMI 2.0.5 and 3.0.2, Co-Simulation and Model Exchange).
 //!
-//! The unit holds a library that is the same for all circuits, and the texts that the circuit was made of: [`packed`]
-//! writes and reads them. The library compiles them when the unit is instantiated, in some milliseconds, so that writer
-//! and unit see the same [`interface`]; [`description`] writes it as `modelDescription.xml`.
+//! A compiled `Simulation` enters. The list of its variables ([`interface`]) and the text of `modelDescription.xml`
+//! ([`description`]) leave. `bramah export` writes them into a unit.
+//!
+//! The runtime library of a unit is the same for all circuits. The unit also holds the texts of its circuit
+//! ([`packed`]), which the library compiles when the unit is instantiated, in some milliseconds. So writer and unit
+//! derive the same interface from the same texts.
 
 pub mod description;
 pub mod interface;

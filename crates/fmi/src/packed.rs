@@ -1,4 +1,7 @@
-//! The texts that a model was made of, in one file: what the compiler read, read again in a unit.
+//! The texts of a model in one file: recorded while it is compiled for the export, read again in the unit.
+//!
+//! [`ReadRecorder`] is a `World` that notes every file that the compiler reads. [`PackedRequest`] holds them with the
+//! request and is itself a `World`, so that the unit compiles without access to the disk.
 
 use bramah_model::compile::Request;
 use bramah_model::instance::Override;
@@ -8,26 +11,32 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-/// The file in `resources/`.
+/// The name of the file in the folder `resources/` of a unit.
 pub const FILE: &str = "model.json";
 
-/// A request with everything that was read for it, under the paths that it had.
+/// A compile request with every file and folder that was read for it, under the original paths.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct PackedRequest {
-    /// Marks unit and description as belonging together.
+    /// The token that ties the texts to `modelDescription.xml`.
     pub token: String,
+    /// The file, package or class to compile.
     source: String,
+    /// The class in it; `None` for the one that can run.
     model: Option<String>,
+    /// Values of parameters from the export, by name.
     set: Vec<(String, String)>,
+    /// Folders of libraries.
     libraries: Vec<String>,
-    /// Patterns of variables that are outputs, where the model has none of its own.
+    /// Patterns of variables that are outputs besides the model's own.
     pub outputs: Vec<String>,
+    /// Texts by path.
     files: BTreeMap<String, String>,
+    /// Entries of folders by path, each with whether it is a folder.
     folders: BTreeMap<String, Vec<(String, bool)>>,
 }
 
 impl PackedRequest {
-    /// The request that is to be compiled.
+    /// The request to compile, with this as its world.
     pub fn request(&self) -> Request {
         Request {
             source: self.source.clone().into(),
@@ -38,15 +47,15 @@ impl PackedRequest {
         }
     }
 
-    /// As the file has it.
+    /// The content of the file.
     pub fn json(&self) -> String {
         serde_json::to_string(self).expect("texts always serialize")
     }
 
-    /// Reads what [`PackedRequest::json`] has written.
+    /// Parses what [`PackedRequest::json`] has written.
     ///
     /// # Errors
-    /// Why it cannot be read.
+    /// The text is no such JSON.
     pub fn from_json(text: &str) -> Result<Self, String> {
         serde_json::from_str(text).map_err(|why| why.to_string())
     }
@@ -63,23 +72,26 @@ impl World for PackedRequest {
     }
 }
 
+/// The path as a key. Slashes are uniform, so that a unit made on Windows works elsewhere.
 fn name(path: &Path) -> String {
     path.to_string_lossy().replace('\\', "/")
 }
 
-/// A world that notes what is read.
+/// A world that passes every access on and notes what was read.
 pub struct ReadRecorder<'a> {
+    /// The world that is read.
     base: &'a dyn World,
+    /// What was read. A mutex, because a world is shared between threads.
     seen: Mutex<PackedRequest>,
 }
 
 impl<'a> ReadRecorder<'a> {
-    /// Notes what is read of `base`.
+    /// A recorder over `base` that has noted nothing yet.
     pub fn new(base: &'a dyn World) -> Self {
         ReadRecorder { base, seen: Mutex::default() }
     }
 
-    /// What was read for a request.
+    /// Everything that was read, together with the request, the outputs and the token.
     pub fn packed(self, request: &Request, outputs: &[String], token: &str) -> PackedRequest {
         let mut packed = self.seen.into_inner().unwrap_or_else(PoisonError::into_inner);
         packed.source = name(&request.source);
@@ -95,11 +107,13 @@ impl<'a> ReadRecorder<'a> {
 impl World for ReadRecorder<'_> {
     fn read(&self, path: &Path) -> Result<String, String> {
         let text = self.base.read(path)?;
+        // Only files that were read successfully; a missing file is missing in the unit too.
         self.seen.lock().unwrap_or_else(PoisonError::into_inner).files.insert(name(path), text.clone());
         Ok(text)
     }
 
     fn bytes(&self, _: &Path) -> Result<Vec<u8>, String> {
+        // Binary files are units of other tools, and a unit cannot hold another one.
         Err("a unit cannot hold another one: export a circuit without it".to_owned())
     }
 

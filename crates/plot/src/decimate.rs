@@ -1,12 +1,13 @@
-//! Long curves made short without a visible change.
+//! Reduces the points of long curves without a visible change, so that pictures stay small.
 
-/// Points of a curve.
+/// Points of a curve, each with its horizontal and vertical coordinate.
 pub type CurvePoints = Vec<(f64, f64)>;
 
-/// A staircase as a polygon: each value is held until the next point.
+/// The corners of a staircase in which each value holds until the next point.
 pub fn staircase(x: &[f64], y: &[f64]) -> CurvePoints {
     let mut out: CurvePoints = Vec::with_capacity(2 * x.len());
     for (&x, &y) in x.iter().zip(y) {
+        // A corner is added only where the value changes.
         if let Some(&(_, last)) = out.last()
             && last != y
         {
@@ -17,10 +18,13 @@ pub fn staircase(x: &[f64], y: &[f64]) -> CurvePoints {
     out
 }
 
-/// Keeps, of every one of `columns` equal stretches of `x`, the first, least, largest and last point in their order:
-/// drawn that many pixels wide, the curve looks the same. Curves whose `x` goes back and forth lose only points closer
-/// than a quarter of such a stretch in both directions. NaN points stay as gaps.
+/// Reduces a curve that is drawn `columns` pixels wide.
+///
+/// The horizontal range is cut into that many equal parts; of each part the first, lowest, highest and last point are
+/// kept. The drawn curve looks the same. A curve whose `x` goes back and forth only loses points that are closer than a
+/// quarter of such a part in both directions. NaN points stay as gaps.
 pub fn decimate(points: CurvePoints, columns: usize) -> CurvePoints {
+    // Each part keeps up to four points, so a shorter curve cannot become shorter.
     if points.len() <= 4 * columns {
         return points;
     }
@@ -28,16 +32,19 @@ pub fn decimate(points: CurvePoints, columns: usize) -> CurvePoints {
     if forward { extremes(&points, columns) } else { thinned(&points, columns) }
 }
 
+/// Keeps first, lowest, highest and last point of each part of an ascending curve.
 fn extremes(points: &[(f64, f64)], columns: usize) -> CurvePoints {
     let (low, high) = (points[0].0, points[points.len() - 1].0);
     let scale = columns as f64 / (high - low);
     let column = |p: &(f64, f64)| ((p.0 - low) * scale) as usize;
     let mut out = CurvePoints::new();
+    // A gap ends a part, so that it is kept.
     for bin in points.chunk_by(|a, b| column(a) == column(b) && a.1.is_nan() == b.1.is_nan()) {
         let mut kept = vec![0, bin.len() - 1];
         let by_value = |i: &usize, j: &usize| bin[*i].1.total_cmp(&bin[*j].1);
         kept.extend((0..bin.len()).min_by(by_value));
         kept.extend((0..bin.len()).max_by(by_value));
+        // In their original order, else the line would go backwards.
         kept.sort_unstable();
         kept.dedup();
         out.extend(kept.into_iter().map(|i| bin[i]));
@@ -45,9 +52,11 @@ fn extremes(points: &[(f64, f64)], columns: usize) -> CurvePoints {
     out
 }
 
+/// Drops points close to the last kept one; for curves such as loops.
 fn thinned(points: &[(f64, f64)], columns: usize) -> CurvePoints {
     let range = |values: &mut dyn Iterator<Item = f64>| {
         let (low, high) = values.filter(|v| v.is_finite()).fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+        // A curve without extent in one direction must not divide by zero.
         (high - low).max(f64::MIN_POSITIVE)
     };
     let dx = range(&mut points.iter().map(|p| p.0)) / (4 * columns) as f64;

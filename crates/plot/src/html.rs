@@ -1,4 +1,7 @@
-//! A figure as one HTML page with zoom and hover, that needs no network and no other file.
+//! Writes a figure as one HTML page with zoom and hover.
+//!
+//! A [`Figure`] enters, the text of a complete page leaves. It needs no network and no other file: script, style and
+//! data are inside. The page also contains the figure as SVG.
 
 use std::fmt::Write as _;
 
@@ -9,32 +12,43 @@ use super::figure::{Figure, FigurePanel, colour};
 use super::svg;
 use bramah_results::number;
 
-/// A curve keeps at most four points in each of this many stretches; zooming shows details down to these.
+/// Curves are reduced to four points in each of this many parts. This limits how far zooming shows details.
 const COLUMNS: usize = 5_000;
-/// Significant digits of the numbers in the page.
+/// Significant digits of the vertical coordinates in the page.
 const DIGITS: usize = 7;
 
+/// The page with marks such as `{{title}}`.
 const PAGE: &str = include_str!("page.html");
+/// The script of the page.
 const SCRIPT: &str = include_str!("page.js");
 
+/// The description of a panel for the script; the numbers are stored apart.
 #[derive(Serialize)]
 struct PanelHead<'a> {
+    /// Label of the horizontal axis.
     x: &'a str,
+    /// Label of the vertical axis.
     y: &'a str,
+    /// Texts for the values 0, 1, 2 and so on; empty for numbers.
     words: &'a [String],
+    /// Names of the curves.
     names: Vec<&'a str>,
+    /// Colours of the curves.
     colours: Vec<&'a str>,
+    /// Which curves are dashed.
     dashed: Vec<bool>,
+    /// Which curves are crosses.
     crosses: Vec<bool>,
 }
 
-/// Writes the page. `facts` are pairs of name and value shown below the picture: model, command, statistics.
+/// Writes the page. `facts` are names and values listed below the picture, such as model and command.
 pub fn write(figure: &Figure, facts: &[(String, String)]) -> String {
     write_around(figure, facts, "")
 }
 
-/// The same with HTML between the title and the curves.
+/// As [`write`], with HTML between the title and the curves. `before` is inserted as it stands and must be escaped.
 pub fn write_around(figure: &Figure, facts: &[(String, String)], before: &str) -> String {
+    // A page without title would show its address in the browser.
     let title = if figure.title.is_empty() { "bramah" } else { &figure.title };
     let mut rows = String::new();
     for (name, value) in facts {
@@ -52,7 +66,8 @@ pub fn write_around(figure: &Figure, facts: &[(String, String)], before: &str) -
     fill(PAGE, &parts)
 }
 
-/// Replaces marks from left to right, so that text put in is never searched for marks.
+/// Replaces the marks in a page from left to right. Inserted text is not searched for marks, since names may contain
+/// them.
 fn fill(page: &str, parts: &[(&str, String)]) -> String {
     let mut out = String::new();
     let mut rest = page;
@@ -65,6 +80,7 @@ fn fill(page: &str, parts: &[(&str, String)]) -> String {
                 rest = &rest[mark.len()..];
             }
             None => {
+                // Two braces that are no mark belong to the page.
                 out.push_str("{{");
                 rest = &rest[2..];
             }
@@ -74,6 +90,7 @@ fn fill(page: &str, parts: &[(&str, String)]) -> String {
     out
 }
 
+/// The description of all panels as JSON.
 fn head(figure: &Figure) -> String {
     let panel = |p: &'_ FigurePanel| -> serde_json::Value {
         serde_json::to_value(PanelHead {
@@ -91,12 +108,13 @@ fn head(figure: &Figure) -> String {
     serde_json::json!({ "shared": figure.shared_x, "panels": panels }).to_string()
 }
 
-/// `</script>` inside a name must not end the script.
+/// JSON that is safe inside a script element: `</script>` in a name must not end it.
 fn in_script(json: &str) -> String {
     json.replace('<', "\\u003c")
 }
 
-/// The numbers: a list of panels, of curves, each `[x, y, x, y, ...]`; gaps are null.
+/// The coordinates as JSON: a list of panels, each a list of curves, each `x, y, x, y` and so on in one list. Gaps are
+/// null.
 fn curves(figure: &Figure) -> String {
     let mut out = String::from("[");
     for (i, panel) in figure.panels.iter().enumerate() {
@@ -107,6 +125,7 @@ fn curves(figure: &Figure) -> String {
             } else {
                 series.x.iter().copied().zip(series.y.iter().copied()).collect()
             };
+            // Crosses mark single points, which must all stay.
             let points = if series.crosses { points } else { decimate(points, COLUMNS) };
             out.push_str(if k > 0 { ",\n[" } else { "[" });
             for (n, (x, y)) in points.into_iter().enumerate() {
@@ -121,6 +140,7 @@ fn curves(figure: &Figure) -> String {
     out
 }
 
+/// A number with so many significant digits; `null` when it is not finite, because JSON has no NaN.
 fn json_number(value: f64, digits: usize) -> String {
     if value.is_finite() { number::rounded(value, digits) } else { "null".to_owned() }
 }

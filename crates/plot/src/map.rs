@@ -1,4 +1,8 @@
-//! A map: quantities over two others, with lines of equal value, as efficiencies are drawn over speed and pressure.
+//! Draws maps: quantities over two others as contour lines, as efficiencies are drawn over speed and pressure.
+//!
+//! Several runs enter. Each is a row of the map: one variable grows along the run (horizontal axis), another keeps its
+//! value (vertical axis). [`map`] interpolates them to a grid, [`write`] draws it as SVG. `bramah plot --x --y` uses
+//! both.
 
 use super::select::{LabelledTrajectory, axis_label, shown_values};
 use super::svg::{begin, escape};
@@ -6,32 +10,34 @@ use super::ticks::{AxisTicks, ticks};
 use bramah_results::{GlobPatterns, Signal, Trajectory};
 use std::fmt::Write as _;
 
-/// Points of the horizontal axis between which runs are interpolated.
+/// Points of the grid along the horizontal axis.
 const COLUMNS: usize = 41;
-/// A quantity that is to stay constant along a run may change by so much of its size.
+/// A quantity counts as constant along a run when its range is below this share of its size.
 const CONSTANT: f64 = 1e-3;
 
-/// What is drawn.
+/// Quantities on a grid, ready to be drawn.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContourMap {
-    /// Stands above; may be empty.
+    /// Text above the picture; may be empty.
     pub title: String,
-    /// Below the horizontal axes, with unit.
+    /// Label of the horizontal axes, with unit.
     pub x_label: String,
-    /// Beside the vertical axes, with unit.
+    /// Label of the vertical axes, with unit.
     pub y_label: String,
-    /// Horizontal places, growing.
+    /// Horizontal coordinates of the grid, ascending.
     pub x: Vec<f64>,
-    /// Vertical places, growing.
+    /// Vertical coordinates of the grid, ascending.
     pub y: Vec<f64>,
-    /// Names of the quantities with their values, row by row upwards; NaN leaves a hole.
+    /// Label and values of each quantity. Values are given row by row from the lowest; NaN leaves a hole.
     pub panels: Vec<(String, Vec<Vec<f64>>)>,
 }
 
-/// Makes a map of runs: each is a row, at the value that `y` keeps along it, and goes from left to right with `x`.
+/// Makes a map from runs. Each run is a row at the value of `y`, and goes from left to right with `x`.
+///
+/// Two runs at the same value of `y` count once.
 ///
 /// # Errors
-/// A sentence when a variable is missing, `y` changes along a run, `x` does not grow, or fewer than two rows remain.
+/// A sentence, when a variable is missing, `y` changes along a run, `x` does not grow, or fewer than two rows remain.
 pub fn map(
     runs: &[LabelledTrajectory<'_>],
     variables: &GlobPatterns,
@@ -53,6 +59,7 @@ pub fn map(
     for (_, run) in &rows {
         places.push(growing(run, x)?);
     }
+    // The grid covers only what all runs have in common, since values are not extrapolated.
     let low = places.iter().map(|p| p[0]).fold(f64::NEG_INFINITY, f64::max);
     let high = places.iter().map(|p| p[p.len() - 1]).fold(f64::INFINITY, f64::min);
     let grid: Vec<f64> = (0..COLUMNS).map(|i| low + (high - low) * i as f64 / (COLUMNS - 1) as f64).collect();
@@ -78,13 +85,14 @@ pub fn map(
     })
 }
 
+/// A signal and its values in the display unit. `Err`: there is none of this name.
 fn shown<'a>(trajectory: &'a Trajectory, name: &str) -> Result<(&'a Signal, Vec<f64>), String> {
     let index = trajectory.index(name).ok_or_else(|| format!("there is no variable `{name}`"))?;
     let signal = &trajectory.signals[index];
     Ok((signal, shown_values(signal, &trajectory.columns[index])))
 }
 
-/// The value that a variable keeps along a run.
+/// The value that a variable keeps along a run. `Err`: it changes.
 fn level(run: &LabelledTrajectory<'_>, name: &str) -> Result<f64, String> {
     let (_, column) = shown(run.trajectory, name)?;
     let (low, high) = column.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
@@ -95,6 +103,7 @@ fn level(run: &LabelledTrajectory<'_>, name: &str) -> Result<f64, String> {
     }
 }
 
+/// The values of a variable that grows along a run. `Err`: it falls somewhere or does not grow at all.
 fn growing(run: &LabelledTrajectory<'_>, name: &str) -> Result<Vec<f64>, String> {
     let (_, column) = shown(run.trajectory, name)?;
     if column.len() >= 2 && column.windows(2).all(|w| w[1] >= w[0]) && column[0] < column[column.len() - 1] {
@@ -104,31 +113,45 @@ fn growing(run: &LabelledTrajectory<'_>, name: &str) -> Result<Vec<f64>, String>
     }
 }
 
+/// Linear interpolation of values at a place.
 fn between(places: &[f64], values: &[f64], at: f64) -> f64 {
+    // The interval around the place; places outside use the first or last one.
     let i = places.partition_point(|p| *p < at).clamp(1, places.len() - 1);
+    // Two equal places are a jump; the value after it is taken.
     let share = if places[i] > places[i - 1] { (at - places[i - 1]) / (places[i] - places[i - 1]) } else { 1.0 };
     values[i - 1] + share.clamp(0.0, 1.0) * (values[i] - values[i - 1])
 }
 
+/// Width of the picture.
 const WIDTH: f64 = 900.0;
+/// Space to the left of the axes.
 const LEFT: f64 = 62.0;
+/// Space below the axes.
 const BELOW: f64 = 52.0;
+/// Space above the axes, for the name of the quantity.
 const ABOVE: f64 = 30.0;
 
-/// A corner on the page with its value.
+/// A corner of the grid: horizontal and vertical place in the picture, and value.
 type GridCorner = (f64, f64, f64);
 
-/// One quantity on the page.
+/// One quantity with its place in the picture.
 struct ContourMapFrame<'a> {
+    /// The map with its axes.
     map: &'a ContourMap,
+    /// Values by row and column.
     values: &'a [Vec<f64>],
+    /// Left edge.
     left: f64,
+    /// Upper edge.
     top: f64,
+    /// Width of the axes.
     width: f64,
+    /// Height of the axes.
     height: f64,
 }
 
 impl ContourMapFrame<'_> {
+    /// The corner of the grid at a column and row.
     fn corner(&self, column: usize, row: usize) -> GridCorner {
         let span = |v: &[f64], at: f64| (at - v[0]) / (v[v.len() - 1] - v[0]);
         let x = self.left + span(&self.map.x, self.map.x[column]) * self.width;
@@ -136,18 +159,19 @@ impl ContourMapFrame<'_> {
         (x, y, self.values[row][column])
     }
 
-    /// Whether a number at this place stays inside.
+    /// Whether a number centred at this place stays inside the axes.
     fn has_room(&self, (x, y): (f64, f64)) -> bool {
         let inside = |at: f64, low: f64, wide: f64, margin: f64| at > low + margin && at < low + wide - margin;
         inside(x, self.left, self.width, 18.0) && inside(y, self.top, self.height, 9.0)
     }
 
-    /// The corners of a cell, around it.
+    /// The four corners of a cell in order around it.
     fn cell(&self, column: usize, row: usize) -> [GridCorner; 4] {
         [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| self.corner(column + i, row + j))
     }
 
-    /// Both halves of each cell; those with holes are left out.
+    /// All cells as two triangles each. Triangles with holes are left out.
+    // In a triangle the interpolation is linear, so a contour line is straight and unique.
     fn triangles(&self) -> Vec<[GridCorner; 3]> {
         let (rows, columns) = (self.map.y.len() - 1, self.map.x.len() - 1);
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
@@ -159,7 +183,7 @@ impl ContourMapFrame<'_> {
     }
 }
 
-/// Draws a map, 900 wide; two quantities a row.
+/// Draws a map, 900 wide, with two quantities in a row.
 pub fn write(map: &ContourMap) -> String {
     let columns = map.panels.len().min(2);
     let rows = map.panels.len().div_ceil(2);
@@ -188,6 +212,7 @@ pub fn write(map: &ContourMap) -> String {
     out
 }
 
+/// Draws one quantity: areas, lines with numbers, axes.
 fn panel(out: &mut String, frame: &ContourMapFrame<'_>, name: &str) {
     let triangles = frame.triangles();
     let finite = || triangles.iter().flatten().map(|c| c.2);
@@ -198,7 +223,7 @@ fn panel(out: &mut String, frame: &ContourMapFrame<'_>, name: &str) {
     axes(out, frame, name);
 }
 
-/// Areas between neighbouring levels, from light to dark.
+/// Draws the areas between neighbouring levels, from light to dark.
 fn bands(out: &mut String, frame: &ContourMapFrame<'_>, levels: &AxisTicks) {
     let edges: Vec<f64> = levels.marks.iter().map(|m| m.0).collect();
     for k in 0..=edges.len() {
@@ -210,12 +235,14 @@ fn bands(out: &mut String, frame: &ContourMapFrame<'_>, levels: &AxisTicks) {
         }
         if !path.is_empty() {
             let fill = shade(k as f64 / edges.len().max(1) as f64);
+            // The thin outline closes the gaps that viewers leave between areas.
             let _ = writeln!(out, "<path d=\"{path}\" fill=\"{fill}\" stroke=\"{fill}\" stroke-width=\"0.6\"/>");
         }
     }
 }
 
-/// Neighbouring cells that lie wholly in a band make one rectangle; others are cut.
+/// Adds a row of a band. Neighbouring cells that are completely inside are joined to one rectangle, which keeps the
+/// file small.
 fn band_of_row(path: &mut String, frame: &ContourMapFrame<'_>, row: usize, (low, high): (f64, f64)) {
     let mut whole: Option<[GridCorner; 4]> = None;
     for column in 0..frame.map.x.len() - 1 {
@@ -224,10 +251,12 @@ fn band_of_row(path: &mut String, frame: &ContourMapFrame<'_>, row: usize, (low,
             whole = Some(whole.map_or(cell, |[a, .., d]| [a, cell[1], cell[2], d]));
             continue;
         }
+        // The rectangle ends before a cell that is not completely inside.
         polygon(path, whole.take().as_ref().map_or(&[], |w| w.as_slice()));
         let [a, b, c, d] = cell;
         for half in [[a, b, c], [a, c, d]] {
             if half.iter().all(|c| c.2.is_finite()) {
+                // Cut off what is below the band, then what is above it.
                 polygon(path, &clipped(&clipped(&half, |v| v - low), |v| high - v));
             }
         }
@@ -235,6 +264,7 @@ fn band_of_row(path: &mut String, frame: &ContourMapFrame<'_>, row: usize, (low,
     polygon(path, whole.as_ref().map_or(&[], |w| w.as_slice()));
 }
 
+/// Adds a closed polygon to a path; nothing for an empty list.
 fn polygon(path: &mut String, corners: &[GridCorner]) {
     for (i, corner) in corners.iter().enumerate() {
         let _ = write!(path, "{}{:.1} {:.1}", if i == 0 { "M" } else { "L" }, corner.0, corner.1);
@@ -244,18 +274,19 @@ fn polygon(path: &mut String, corners: &[GridCorner]) {
     }
 }
 
-/// From nearly white to a blue on which dark lines still show.
+/// The colour of a band: from nearly white to a blue on which dark lines are still visible.
 fn shade(share: f64) -> String {
     let mix = |from: f64, to: f64| (from + share.clamp(0.0, 1.0) * (to - from)).round() as u8;
     format!("#{:02x}{:02x}{:02x}", mix(247.0, 112.0), mix(249.0, 168.0), mix(251.0, 208.0))
 }
 
-/// The part of a polygon where a function of the value is not negative.
+/// The part of a polygon where `inside` of the value is not negative.
 fn clipped(polygon: &[GridCorner], inside: impl Fn(f64) -> f64) -> Vec<GridCorner> {
     let mut out = Vec::new();
     for (i, &b) in polygon.iter().enumerate() {
         let a = polygon[(i + polygon.len() - 1) % polygon.len()];
         let (da, db) = (inside(a.2), inside(b.2));
+        // An edge that changes sides is cut where the function is zero.
         if (da >= 0.0) != (db >= 0.0) {
             let s = da / (da - db);
             out.push((a.0 + s * (b.0 - a.0), a.1 + s * (b.1 - a.1), a.2 + s * (b.2 - a.2)));
@@ -267,7 +298,7 @@ fn clipped(polygon: &[GridCorner], inside: impl Fn(f64) -> f64) -> Vec<GridCorne
     out
 }
 
-/// Lines of equal value, each with its number where it crosses the diagonal.
+/// Draws the contour lines. Each has its number near the diagonal of the map, away from other numbers.
 fn lines(out: &mut String, frame: &ContourMapFrame<'_>, triangles: &[[GridCorner; 3]], levels: &AxisTicks) {
     let mut texts: Vec<(f64, f64)> = Vec::new();
     let mut numbers = String::new();
@@ -283,6 +314,7 @@ fn lines(out: &mut String, frame: &ContourMapFrame<'_>, triangles: &[[GridCorner
         let from_diagonal =
             |p: (f64, f64)| ((p.0 - frame.left) / frame.width - (frame.top + frame.height - p.1) / frame.height).abs();
         let free = |p: &(f64, f64)| texts.iter().all(|t| (t.0 - p.0).abs() > 34.0 || (t.1 - p.1).abs() > 15.0);
+        // Numbers must overlap neither each other nor the frame. A line without room gets none.
         let candidates = segments.iter().map(middle).filter(|p| frame.has_room(*p) && free(p));
         if let Some(p) = candidates.min_by(|a, b| from_diagonal(*a).total_cmp(&from_diagonal(*b))) {
             texts.push(p);
@@ -294,10 +326,11 @@ fn lines(out: &mut String, frame: &ContourMapFrame<'_>, triangles: &[[GridCorner
             );
         }
     }
+    // All numbers come after all lines, so that no line crosses them.
     out.push_str(&numbers);
 }
 
-/// Where a level passes through a triangle.
+/// The segment in which a level crosses a triangle. `None`: it does not.
 fn crossing(triangle: &[GridCorner; 3], level: f64) -> Option<[f64; 4]> {
     let mut points = Vec::new();
     for i in 0..3 {
@@ -313,6 +346,7 @@ fn crossing(triangle: &[GridCorner; 3], level: f64) -> Option<[f64; 4]> {
     }
 }
 
+/// Draws frame, name, ticks and labels of a quantity.
 fn axes(out: &mut String, frame: &ContourMapFrame<'_>, name: &str) {
     let ContourMapFrame { left, top, width, height, map, .. } = frame;
     let (right, bottom) = (left + width, top + height);
@@ -354,6 +388,7 @@ fn axes(out: &mut String, frame: &ContourMapFrame<'_>, name: &str) {
     );
 }
 
+/// Adds a power of ten to a label.
 fn with_power(label: &str, power: i32) -> String {
     if power == 0 { label.to_owned() } else { format!("{label} (1e{power})") }
 }

@@ -1,4 +1,7 @@
-//! A scatter matrix: every column of a table against every other one, each column's spread on the diagonal.
+//! Draws a scatter matrix: every column of a table over every other one, with histograms on the diagonal.
+//!
+//! A [`ScatterMatrix`] enters, an SVG text leaves; `bramah sweep --plot` draws the runs of a sweep with it. Only the
+//! lower half is drawn, since the upper one shows the same pairs.
 
 use super::figure::colour;
 use super::svg::{begin, escape};
@@ -6,49 +9,57 @@ use super::ticks::{AxisTicks, ticks};
 use bramah_results::number;
 use std::fmt::Write as _;
 
-/// What is drawn.
+/// The table to draw.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ScatterMatrix {
-    /// Stands above; may be empty.
+    /// Text above the picture; may be empty.
     pub title: String,
     /// Names of the columns.
     pub names: Vec<String>,
-    /// Values, one column a name, all of equal length; rows with NaN are left out of a cell.
+    /// Values by column, all columns of equal length. A cell leaves out rows with NaN.
     pub columns: Vec<Vec<f64>>,
-    /// The column that colours the dots, from blue for its least value to red for its largest.
+    /// The column that colours the dots from blue (lowest) to red (highest). `None`: all are blue.
     pub shade: Option<usize>,
 }
 
-/// Width of the picture, and room at its left and bottom for numbers.
+/// Width of the picture.
 const WIDTH: f64 = 900.0;
+/// Space at the left and the bottom, for numbers.
 const MARGIN: f64 = 64.0;
-/// Gap between cells.
+/// Space between cells.
 const GAP: f64 = 8.0;
-/// Bars on the diagonal.
+/// Bars of a histogram.
 const BARS: usize = 16;
-/// Dots drawn at most in a cell; of more rows every second, third ... is taken.
+/// Dots in a cell at most. Of more rows only every second, third and so on is drawn.
 const DOTS: usize = 2000;
 
-/// One cell on the page with the ranges of its axes.
+/// A cell with its place and the ranges of its axes.
 struct ScatterCell {
+    /// Left edge.
     left: f64,
+    /// Upper edge.
     top: f64,
+    /// Side of the square.
     side: f64,
+    /// Lowest and highest value of the horizontal axis.
     x: (f64, f64),
+    /// Lowest and highest value of the vertical axis.
     y: (f64, f64),
 }
 
 impl ScatterCell {
+    /// The horizontal place of a value.
     fn px(&self, x: f64) -> f64 {
         self.left + (x - self.x.0) / (self.x.1 - self.x.0) * self.side
     }
 
+    /// The vertical place of a value. SVG counts downwards.
     fn py(&self, y: f64) -> f64 {
         self.top + self.side - (y - self.y.0) / (self.y.1 - self.y.0) * self.side
     }
 }
 
-/// Draws the lower half of a matrix, 900 wide and about as high.
+/// Draws the lower half of the matrix, 900 wide and about as high.
 pub fn write(matrix: &ScatterMatrix) -> String {
     let n = matrix.names.len().max(1);
     let top = if matrix.title.is_empty() { 12.0 } else { 44.0 };
@@ -84,13 +95,13 @@ pub fn write(matrix: &ScatterMatrix) -> String {
     out
 }
 
-/// The smallest and the largest finite value; the wrong way round where there is none.
+/// The lowest and the highest finite value. Without any, the first is larger than the second.
 fn extremes(values: &[f64]) -> (f64, f64) {
     let finite = || values.iter().copied().filter(|v| v.abs() < 1e300);
     (finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max))
 }
 
-/// The finite values' range with a margin; never empty.
+/// The range of the finite values with a margin. It is never empty.
 fn range(values: &[f64]) -> (f64, f64) {
     let (low, high) = extremes(values);
     if low > high {
@@ -101,17 +112,19 @@ fn range(values: &[f64]) -> (f64, f64) {
     (low - margin, high + margin)
 }
 
-/// How often a column takes which values, under its name.
+/// Draws the histogram of a column and its name.
 fn spread(out: &mut String, matrix: &ScatterMatrix, column: usize, cell: &ScatterCell) {
     let mut counts = [0u32; BARS];
     let wide = cell.x.1 - cell.x.0;
     for v in matrix.columns[column].iter().filter(|v| v.is_finite()) {
         let bar = ((v - cell.x.0) / wide * BARS as f64) as usize;
+        // The largest value may fall behind the last bar by rounding.
         counts[bar.min(BARS - 1)] += 1;
     }
     let most = f64::from(counts.iter().copied().max().unwrap_or(0).max(1));
     let step = cell.side / BARS as f64;
     for (k, count) in counts.iter().enumerate().filter(|(_, c)| **c > 0) {
+        // The space above the highest bar is for the name.
         let high = 0.78 * cell.side * f64::from(*count) / most;
         let (x, y) = (cell.left + k as f64 * step, cell.top + cell.side - high);
         let fill = colour(5);
@@ -126,10 +139,12 @@ fn spread(out: &mut String, matrix: &ScatterMatrix, column: usize, cell: &Scatte
     let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\" font-weight=\"bold\">{name}</text>");
 }
 
+/// Draws the dots of one column over another.
 fn dots(out: &mut String, matrix: &ScatterMatrix, row: usize, column: usize, cell: &ScatterCell) {
     let (xs, ys) = (&matrix.columns[column], &matrix.columns[row]);
     let shades = matrix.shade.map(|k| &matrix.columns[k]);
     let (low, high) = shades.map_or((0.0, 1.0), |s| extremes(s));
+    // Every n-th row, so that the dots are spread over the entire table.
     let stride = xs.len().div_ceil(DOTS).max(1);
     for k in (0..xs.len()).step_by(stride).filter(|&k| xs[k].is_finite() && ys[k].is_finite()) {
         let part = shades.map_or(0.0, |s| if high > low { ((s[k] - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 });
@@ -138,7 +153,7 @@ fn dots(out: &mut String, matrix: &ScatterMatrix, row: usize, column: usize, cel
     }
 }
 
-/// From blue over grey to red; grey for what is not a number.
+/// A colour from blue over grey to red for a share from 0 to 1; grey for NaN.
 fn between(part: f64) -> String {
     const ENDS: [[f64; 3]; 3] = [[0.0, 114.0, 178.0], [170.0, 170.0, 170.0], [213.0, 94.0, 0.0]];
     let part = if part.is_nan() { 0.5 } else { part };
@@ -148,23 +163,23 @@ fn between(part: f64) -> String {
     format!("#{:02x}{:02x}{:02x}", mix(0), mix(1), mix(2))
 }
 
-/// As many ticks as there is room for, but two at least: one number alone says nothing of the scale.
+/// As many ticks as there is room for, but at least two where possible: one number does not show the scale.
 fn readable(range: (f64, f64), side: f64) -> AxisTicks {
     let least = ((side / 55.0) as usize).max(2);
     let found = |count: usize| ticks(range.0, range.1, count);
     (least..least + 4).map(found).find(|t| t.marks.len() > 1).unwrap_or_else(|| found(least))
 }
 
-/// Width of a digit at the size of the numbers.
+/// Width of a digit at the font size of the numbers.
 const DIGIT: f64 = 7.0;
 
-/// The middle of a text that is twice `half` long, moved so that it does not reach into the numbers of the next cell.
+/// The middle of a text of length 2 `half`, moved so that it stays inside its cell.
 fn inside(middle: f64, half: f64, (begin, side): (f64, f64)) -> f64 {
     let half = half.min(side / 2.0);
     middle.clamp(begin + half, begin + side - half)
 }
 
-/// The edge, and numbers at the left and at the bottom of the matrix.
+/// Draws the edge of a cell, and the numbers at the left and the bottom of the matrix.
 fn frame(out: &mut String, cell: &ScatterCell, (left, bottom): (bool, bool)) {
     let (l, t, s) = (cell.left, cell.top, cell.side);
     let _ = writeln!(
@@ -184,7 +199,7 @@ fn frame(out: &mut String, cell: &ScatterCell, (left, bottom): (bool, bool)) {
             let _ = writeln!(out, "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"middle\">{}</text>", escape(&text));
         }
     }
-    // the power of ten at the left stands in the cell, for beside it stands a number
+    // The power of ten of the left axis is inside the cell, because there is a number beside it.
     for (show, range, x, y, anchor) in
         [(left, cell.y, l + 4.0, t + 13.0, "start"), (bottom, cell.x, l + s, t + s + 32.0, "end")]
     {

@@ -1,17 +1,18 @@
-//! An SVG picture as PNG, with fonts that ship with bramah, so that it looks the same everywhere.
+//! Renders an SVG picture as PNG. The fonts are part of the binary, so the result does not depend on the machine.
 
 use std::sync::Arc;
 
 use resvg::{tiny_skia, usvg};
 
-/// Pixels a unit of the SVG.
+/// Pixels for one SVG unit. Two keep text sharp on dense screens.
 const SCALE: f32 = 2.0;
 
-/// Draws an SVG text.
+/// Renders an SVG text and returns the bytes of a PNG file.
 ///
 /// # Errors
-/// A sentence when the text is no SVG or the picture is too large to hold in memory.
+/// A sentence, when the text is no SVG or the picture is too large for memory.
 pub fn write(svg: &str) -> Result<Vec<u8>, String> {
+    // Fonts of the system are not loaded, because the picture would then differ between machines.
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
     fonts.load_font_data(epaint_default_fonts::HACK_REGULAR.to_vec());

@@ -1,47 +1,65 @@
-//! Streams between things drawn with widths in proportion.
+//! Draws a Sankey diagram: flows between nodes, with widths in proportion to their size.
+//!
+//! A list of [`SankeyFlow`] enters, an SVG text leaves; `bramah steady --sankey` draws powers with it. Nodes are placed
+//! in columns from left to right. Flows that would close a circle are drawn back below the others.
 
 use super::figure::colour;
 use super::svg::{begin, escape};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-/// A stream from one thing to another.
+/// A flow from one node to another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SankeyFlow {
-    /// Where it comes from.
+    /// Name of the node that it leaves.
     pub from: String,
-    /// Where it goes.
+    /// Name of the node that it enters.
     pub to: String,
-    /// Its size, positive.
+    /// Its size, greater than zero.
     pub size: f64,
 }
 
+/// Width of the picture.
 const WIDTH: f64 = 1000.0;
+/// Width of the bar of a node.
 const BAR: f64 = 14.0;
+/// Vertical space between bars, for their names.
 const GAP: f64 = 40.0;
+/// Total height of the bars in the fullest column.
 const HEIGHT: f64 = 420.0;
+/// Space above the bars, for the title.
 const TOP: f64 = 50.0;
+/// Space at the sides and at the bottom.
 const EDGE: f64 = 20.0;
-/// Room right of the last bar for its name.
+/// Space to the right of the last bar, for its name.
 const NAME: f64 = 150.0;
-/// The bend of a stream that goes back, beyond half of its width.
+/// Inner radius of the bend of a flow that goes back.
 const BEND: f64 = 6.0;
 
+/// A node with its place.
 struct SankeyNode<'a> {
+    /// Name of the node.
     name: &'a str,
+    /// Column, counted from the left.
     column: usize,
+    /// The larger of the sums of what enters and what leaves.
     size: f64,
+    /// Upper edge of the bar.
     top: f64,
+    /// Height of the bar that is used by leaving flows so far.
     given: f64,
+    /// Height of the bar that is used by entering flows so far.
     taken: f64,
 }
 
-/// The streams as SVG, from left to right; those that close a circle go back below. `words` says a size with its unit.
+/// Draws the flows as SVG. `words` writes a size with its unit.
 pub fn svg(title: &str, flows: &[SankeyFlow], words: impl Fn(f64) -> String) -> String {
     let back = returning(flows);
     let mut blocks = blocks(flows, &back);
     let scale = place(&mut blocks, flows, &back);
+    // A thin flow stays visible.
     let width = |flow: &SankeyFlow| (flow.size * scale).max(0.5);
+    // Flows that go back need room at both sides for their bends.
     let widest = flows.iter().zip(&back).filter(|(_, b)| **b).map(|(f, _)| width(f) + BEND).fold(0.0, f64::max);
     let columns = blocks.iter().map(|b| b.column).max().unwrap_or(0);
     let from = EDGE + widest;
@@ -59,6 +77,7 @@ pub fn svg(title: &str, flows: &[SankeyFlow], words: impl Fn(f64) -> String) -> 
         let (x0, x1) = (left(blocks[giver].column) + BAR, left(blocks[taker].column));
         let paint = colour(giver);
         let shape = if back[k] {
+            // Each one runs below the one before.
             let r = half + BEND;
             let bottom = lowest + half;
             lowest = bottom + half + BEND;
@@ -70,7 +89,7 @@ pub fn svg(title: &str, flows: &[SankeyFlow], words: impl Fn(f64) -> String) -> 
                 y1 + r
             )
         } else {
-            // an area, for a thick line along a steep curve overlaps itself
+            // Drawn as an area, because a thick line along a steep curve would overlap itself.
             let middle = (x0 + x1) / 2.0;
             let (a, b, c, d) = (y0 - half, y1 - half, y1 + half, y0 + half);
             format!(
@@ -100,10 +119,13 @@ pub fn svg(title: &str, flows: &[SankeyFlow], words: impl Fn(f64) -> String) -> 
     out + "</svg>\n"
 }
 
-/// Which streams close a circle: the large ones go forward first, and one goes back where its end already leads to its
-/// beginning.
+/// Which flows go back because they would close a circle.
+///
+/// Flows are added in the order of their size, the largest first. A flow goes back when its end already leads to its
+/// beginning, so that large flows go forward.
 fn returning(flows: &[SankeyFlow]) -> Vec<bool> {
     let mut order: Vec<usize> = (0..flows.len()).collect();
+    // Equal sizes are ordered by their index, so that the picture is always the same.
     order.sort_by(|&a, &b| flows[b].size.total_cmp(&flows[a].size).then(a.cmp(&b)));
     let mut forward: Vec<&SankeyFlow> = Vec::new();
     let mut back = vec![false; flows.len()];
@@ -121,7 +143,7 @@ fn returning(flows: &[SankeyFlow]) -> Vec<bool> {
     back
 }
 
-/// Each thing with the column it stands in: one behind everything that feeds it.
+/// The nodes with their columns: each one column behind the last node that feeds it.
 fn blocks<'a>(flows: &'a [SankeyFlow], back: &[bool]) -> Vec<SankeyNode<'a>> {
     let mut sums: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for flow in flows {
@@ -129,6 +151,7 @@ fn blocks<'a>(flows: &'a [SankeyFlow], back: &[bool]) -> Vec<SankeyNode<'a>> {
         sums.entry(&flow.to).or_default().1 += flow.size;
     }
     let mut columns: BTreeMap<&str, usize> = sums.keys().map(|n| (*n, 0)).collect();
+    // The longest path has at most as many steps as there are nodes, so so many rounds are enough.
     for _ in 0..sums.len() {
         for (flow, _) in flows.iter().zip(back).filter(|(_, back)| !**back) {
             let least = columns[flow.from.as_str()] + 1;
@@ -145,11 +168,13 @@ fn blocks<'a>(flows: &'a [SankeyFlow], back: &[bool]) -> Vec<SankeyNode<'a>> {
     all
 }
 
-/// Stacks the things of each column, each near what feeds it; returns the height of one unit of size.
+/// Stacks the nodes of each column, ordered by the heights of the nodes that feed them. Returns the height of a unit of
+/// size.
 fn place(blocks: &mut [SankeyNode<'_>], flows: &[SankeyFlow], back: &[bool]) -> f64 {
     let columns = blocks.iter().map(|b| b.column + 1).max().unwrap_or(0);
     let total = |column: usize| blocks.iter().filter(|b| b.column == column).map(|b| b.size).sum::<f64>();
     let largest = (0..columns).map(total).fold(0.0, f64::max);
+    // Without any flow the scale does not matter.
     let scale = if largest > 0.0 { HEIGHT / largest } else { 1.0 };
     for column in 0..columns {
         let height = |block: &SankeyNode<'_>| {
@@ -171,13 +196,16 @@ fn place(blocks: &mut [SankeyNode<'_>], flows: &[SankeyFlow], back: &[bool]) -> 
     scale
 }
 
-/// The streams with the heights of their ends: those at one bar in the order of their other ends, so that they do not
-/// cross there, and those that go back lowest.
+/// The flows with the heights of their two ends.
+///
+/// At each bar the flows are ordered by the height of their other ends, so that they do not cross there. Flows that go
+/// back are lowest.
 fn ends(flows: &[SankeyFlow], back: &[bool], blocks: &mut [SankeyNode<'_>], scale: f64) -> Vec<(usize, f64, f64)> {
     let mut all: Vec<(usize, f64, f64)> = (0..flows.len()).map(|k| (k, 0.0, 0.0)).collect();
     let find = |blocks: &[SankeyNode<'_>], name: &str| {
         blocks.iter().position(|b| b.name == name).expect("every end has a block")
     };
+    // First the ends where flows leave their nodes, then those where they enter.
     for giving in [true, false] {
         let far = |k: usize| if giving { &flows[k].to } else { &flows[k].from };
         let key = |k: usize| (back[k], blocks[find(blocks, far(k))].top);

@@ -1,4 +1,7 @@
-//! A figure as SVG.
+//! Draws a figure of curves as SVG, and offers the common parts of all pictures ([`escape`], `begin`).
+//!
+//! A [`Figure`] enters, the text of an SVG file leaves. The panels share one left margin, so that their axes are
+//! aligned. Coordinates are written with one decimal, which keeps files small.
 
 use std::fmt::{Display, Write as _};
 
@@ -8,37 +11,47 @@ use super::ticks::{AxisTicks, ticks};
 
 /// Width of the picture.
 const WIDTH: f64 = 900.0;
-/// Room right of the axes.
+/// Space to the right of the axes.
 const RIGHT: f64 = 24.0;
-/// Text size, and the width of an average character of it.
+/// Font size.
 const TEXT: f64 = 13.0;
+/// Mean width of a character at this font size. The real width is not known, because the viewer chooses the font.
 const CHARACTER: f64 = 6.6;
 /// Height of a line of the legend.
 const LINE: f64 = 20.0;
 
-/// Where one panel stands.
+/// Position and ranges of a panel's axes in the picture.
 struct PanelFrame {
+    /// Left edge in the picture.
     left: f64,
+    /// Upper edge in the picture.
     top: f64,
+    /// Width of the axes.
     width: f64,
+    /// Height of the axes.
     height: f64,
+    /// Lowest and highest value of the horizontal axis.
     x: (f64, f64),
+    /// Lowest and highest value of the vertical axis.
     y: (f64, f64),
 }
 
 impl PanelFrame {
+    /// The horizontal place of a value in the picture.
     fn px(&self, x: f64) -> f64 {
         self.left + (x - self.x.0) / (self.x.1 - self.x.0) * self.width
     }
 
+    /// The vertical place of a value. SVG counts downwards.
     fn py(&self, y: f64) -> f64 {
         self.top + self.height - (y - self.y.0) / (self.y.1 - self.y.0) * self.height
     }
 }
 
-/// Draws a figure. The picture is 900 wide; its height follows the number of panels.
+/// Draws a figure. The picture is 900 wide, its height depends on the number of panels.
 pub fn write(figure: &Figure) -> String {
     let plots: Vec<PanelAxes<'_>> = figure.panels.iter().map(|p| PanelAxes::new(p, figure)).collect();
+    // The widest tick text of all panels decides, so that all axes begin at the same place.
     let left = plots.iter().map(PanelAxes::label_width).fold(0.0, f64::max) + 44.0;
     let mut body = String::new();
     let mut y = if figure.title.is_empty() { 10.0 } else { 40.0 };
@@ -61,7 +74,7 @@ pub fn write(figure: &Figure) -> String {
     out
 }
 
-/// How every picture begins: its size, the size of its letters, its title for readers, white paper.
+/// The beginning of every picture: size, font size, title for screen readers, white background.
 pub(super) fn begin(width: impl Display, height: impl Display, text: impl Display, title: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
@@ -71,7 +84,7 @@ pub(super) fn begin(width: impl Display, height: impl Display, text: impl Displa
     )
 }
 
-/// Text with the characters escaped that mean something in XML; control characters are dropped.
+/// Escapes the characters that have a meaning in XML. Control characters are dropped, as XML forbids most of them.
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -87,17 +100,24 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// A panel with its ranges and ticks.
+/// A panel with its ranges and ticks, ready to be placed.
 struct PanelAxes<'a> {
+    /// The content.
     panel: &'a FigurePanel,
+    /// Range of the horizontal axis.
     x: (f64, f64),
+    /// Range of the vertical axis.
     y: (f64, f64),
+    /// Ticks of the horizontal axis.
     x_ticks: AxisTicks,
+    /// Ticks of the vertical axis.
     y_ticks: AxisTicks,
+    /// Height of the axes in the picture.
     height: f64,
 }
 
 impl<'a> PanelAxes<'a> {
+    /// Chooses ranges, ticks and height of a panel.
     fn new(panel: &'a FigurePanel, figure: &Figure) -> Self {
         let own = panel.bounds().unwrap_or((0.0, 1.0, 0.0, 1.0));
         let shared = || figure.panels.iter().filter_map(FigurePanel::bounds).map(|b| (b.0, b.1));
@@ -106,12 +126,15 @@ impl<'a> PanelAxes<'a> {
         } else {
             (own.0, own.1)
         };
+        // Fewer panels get more height. A panel with words needs a line for each word.
         let height = match (figure.panels.len(), panel.words.is_empty()) {
             (1, _) => 400.0,
             (2, true) => 240.0,
             (_, true) => 180.0,
             (_, false) => 30.0 + 24.0 * panel.words.len() as f64,
         };
+        // A curve over time may touch the frame at its ends. A curve over another quantity may turn there and gets a
+        // margin.
         let phase = !figure.shared_x;
         let x = if phase { widened(x, 0.05) } else { widened(x, 0.0) };
         let y =
@@ -121,12 +144,13 @@ impl<'a> PanelAxes<'a> {
         PanelAxes { panel, x, y, x_ticks: ticks(x.0, x.1, 8), y_ticks, height }
     }
 
+    /// Width of the longest tick text of the vertical axis.
     fn label_width(&self) -> f64 {
         let longest = self.y_ticks.marks.iter().map(|m| m.1.chars().count()).max().unwrap_or(0);
         longest as f64 * CHARACTER
     }
 
-    /// Draws at height `y` and returns where the next panel begins.
+    /// Draws the panel at height `y`. Returns where the next panel begins.
     fn draw(&self, out: &mut String, index: usize, y: f64, left: f64, with_x_label: bool) -> f64 {
         let legend_height = self.legend(out, y, left);
         let frame = PanelFrame {
@@ -138,6 +162,7 @@ impl<'a> PanelAxes<'a> {
             y: self.y,
         };
         self.axes(out, &frame, with_x_label);
+        // Curves are clipped to the axes; the name must be unique in the picture.
         let _ = writeln!(
             out,
             "<clipPath id=\"c{index}\"><rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\"/></clipPath>\n\
@@ -152,6 +177,7 @@ impl<'a> PanelAxes<'a> {
             let down = band.x.iter().copied().zip(band.low.iter().copied());
             let columns = frame.width as usize;
             let mut points = decimate(up.collect(), columns);
+            // There along the upper edge and back along the lower one.
             points.extend(decimate(down.collect(), columns).into_iter().rev());
             let fill = colour(band.colour);
             let _ = writeln!(
@@ -167,12 +193,13 @@ impl<'a> PanelAxes<'a> {
         frame.top + frame.height + if with_x_label { 52.0 } else { 14.0 }
     }
 
-    /// The legend above the axes; returns its height.
+    /// Draws the legend above the axes and returns its height.
     fn legend(&self, out: &mut String, y: f64, left: f64) -> f64 {
         let mut x = left;
         let mut line = y + 14.0;
         for series in &self.panel.series {
             let width = 34.0 + 16.0 + series.name.chars().count() as f64 * CHARACTER * 1.02;
+            // A new line when the entry does not fit, unless the line is empty.
             if x + width > WIDTH - RIGHT && x > left {
                 x = left;
                 line += LINE;
@@ -192,6 +219,7 @@ impl<'a> PanelAxes<'a> {
         line - y + 10.0
     }
 
+    /// Draws grid, ticks, frame and labels.
     fn axes(&self, out: &mut String, frame: &PanelFrame, with_x_label: bool) {
         let (l, t, w, h) = (frame.left, frame.top, frame.width, frame.height);
         let bottom = t + h;
@@ -240,7 +268,7 @@ impl<'a> PanelAxes<'a> {
     }
 }
 
-/// `p in Pa` with a power of ten becomes `p in 10^6 Pa`.
+/// Adds a power of ten to a label: `p in Pa` becomes `p in 1e6 Pa`.
 fn with_power(label: &str, power: i32) -> String {
     if power == 0 {
         return label.to_owned();
@@ -251,13 +279,14 @@ fn with_power(label: &str, power: i32) -> String {
     }
 }
 
+/// Ticks with words at the values 0, 1, 2 and so on.
 fn words(words: &[String]) -> AxisTicks {
     AxisTicks { marks: words.iter().enumerate().map(|(i, w)| (i as f64, w.clone())).collect(), power: 0 }
 }
 
-/// The range with a margin of this part on both sides; never empty.
+/// The range with a margin of this share on both sides. It is never empty.
 fn widened(range: (f64, f64), part: f64) -> (f64, f64) {
-    // Beyond this the width itself would overflow.
+    // The width of a larger range would overflow.
     let (low, high) = (range.0.max(-1e300), range.1.min(1e300));
     let width = high - low;
     let smallest = 1e-9 * low.abs().max(high.abs());
@@ -268,7 +297,7 @@ fn widened(range: (f64, f64), part: f64) -> (f64, f64) {
     (low - part * width, high + part * width)
 }
 
-/// Smaller letters for a text that would be longer than its room and run into its neighbour's.
+/// The attribute for a smaller font when a text does not fit into `room`; empty when it fits.
 fn smaller(text: &str, room: f64) -> String {
     let length = text.chars().count() as f64 * CHARACTER;
     if length <= room { String::new() } else { format!(" font-size=\"{:.1}\"", (TEXT * room / length).max(6.0)) }
@@ -277,12 +306,15 @@ fn smaller(text: &str, room: f64) -> String {
 /// Half the size of a cross.
 const ARM: f64 = 4.5;
 
+/// Path data of a cross around a point.
 fn cross(x: f64, y: f64) -> String {
     let size = 2.0 * ARM;
     format!("M{:.1} {:.1}l{size} {size}m-{size} 0l{size} -{size}", x - ARM, y - ARM)
 }
 
+/// Draws one curve, or the crosses of its points.
 fn curve(out: &mut String, series: &PlotSeries, frame: &PanelFrame) {
+    // Crosses are not reduced: each one is a point of its own.
     if series.crosses {
         let finite = series.x.iter().zip(&series.y).filter(|(x, y)| x.is_finite() && y.is_finite());
         let data: String = finite.map(|(&x, &y)| cross(frame.px(x), frame.py(y))).collect();
@@ -310,7 +342,7 @@ fn curve(out: &mut String, series: &PlotSeries, frame: &PanelFrame) {
     );
 }
 
-/// Path data; a gap in the points lifts the pen.
+/// Path data through the points. A gap interrupts the line.
 fn path(points: &[(f64, f64)], frame: &PanelFrame) -> String {
     let mut data = String::new();
     let mut pen = 'M';
@@ -319,6 +351,7 @@ fn path(points: &[(f64, f64)], frame: &PanelFrame) -> String {
             pen = 'M';
             continue;
         }
+        // Viewers fail at huge coordinates; what lies that far outside is clipped anyway.
         let _ = write!(data, "{pen}{:.1} {:.1}", frame.px(x), frame.py(y).clamp(-1e5, 1e5));
         pen = 'L';
     }

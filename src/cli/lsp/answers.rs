@@ -131,7 +131,7 @@ impl LspWorkspace {
                 self.of_file(params, |_, view| DocumentSymbolResponse::Nested(outline::symbols(view)))
             }
             request::FoldingRangeRequest::METHOD => read::<FoldingRangeParams>(params).and_then(|p| {
-                // Folding needs only the text, so it works where nothing can be parsed.
+                // Folding needs only the tokens of the text, so it works for a text with syntax errors.
                 let text = self.text(&p.text_document.uri)?;
                 write(outline::folds(&text))
             }),
@@ -305,7 +305,7 @@ impl LspWorkspace {
         edits: BTreeMap<PathBuf, Vec<TextEdit>>,
         file: Option<(&PathBuf, &String)>,
     ) -> WorkspaceEdit {
-        // The simple form suffices without a renamed file, and every editor knows it.
+        // Without a file to rename the simple form suffices, which needs no support of file operations in the editor.
         let Some((path, name)) = file else {
             let changes = edits.into_iter().filter_map(|(path, edits)| Some((self.cache.uri(&path)?, edits)));
             return edit_of(changes);

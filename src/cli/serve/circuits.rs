@@ -173,7 +173,7 @@ struct SimulationRequest {
 /// Starts a job that simulates a circuit. `Err`: the request cannot be read, or the stop time is no time.
 pub(super) fn run(folder: &ServerFolder, ask: &HttpRequest, jobs: &ServerJobs) -> Result<HttpResponse, HttpRefusal> {
     let wanted: SimulationRequest = ask.json()?;
-    // Checked here rather than in the job, so that the page can mark the field.
+    // Checked before the job starts, so that the error is the answer to this request.
     let stop = match wanted.stop.trim() {
         "" => None,
         text => Some(seconds(text).map_err(|why| HttpRefusal::new(422, why))?),

@@ -192,7 +192,7 @@ impl FolderFiles {
         if package {
             self.circuits.push(here.display().to_string());
         }
-        // Counted here as well as on entry, because the limit is on the total.
+        // The limit is on the total over all folders, so it is checked at each entry.
         for (name, is_folder) in entries {
             if self.circuits.len() + self.studies.len() + self.recordings.len() >= MOST {
                 return;

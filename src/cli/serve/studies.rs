@@ -308,7 +308,7 @@ pub(super) fn diagnose(
     begin(folder, ask, uploads, jobs, |question, sources, job| {
         let held = question.held(None, sources).map_err(|d| full(sources, &d))?;
         let mut progress = |stage: bramah_gap::Stage| {
-            // The diagnosis calls this at each stage, which is also the only place where it can be stopped.
+            // The diagnosis calls this at each stage, and ends when it returns `Break`.
             job.at(stage.to_string(), None);
             if job.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
@@ -325,7 +325,7 @@ pub(super) fn diagnose(
             DownloadFile { name: "report.html", text: report.clone() },
         ];
         let fixed = diagnosis.corrected();
-        // Without an accepted effect there is no corrected model, and so no file.
+        // The file is left out when the corrected model cannot be written; its diagnostics are shown instead.
         files.extend(fixed.value.map(|text| DownloadFile { name: "fixed.mo", text }));
         let warnings = [diagnosis.diagnostics(), &fixed.diagnostics].concat();
         let messages = format!("{}\n\n{}", full(sources, &warnings), diagnosis.words());

@@ -1,6 +1,7 @@
 //! Messages of all stages put together: sorted, each said once, and shortened for the texts of libraries.
 //!
-//! `compile::with_class` calls these functions on the list of all diagnostics. None of them adds an error.
+//! `compile::with_class` calls most of these functions on the list of all diagnostics; callers of the pipeline sort the
+//! list with [`sort_messages`] before they print it. Only [`other_versions`] makes new diagnostics.
 
 use super::Request;
 use crate::resolve::Library;
@@ -18,9 +19,11 @@ pub fn sort_messages(diagnostics: &mut [Diagnostic]) {
 ///
 /// One mistake in a class shows in each of its instances, and one message is enough. Two open ports of one component
 /// differ in the second place, so both stay.
+/// Messages without a place all stay.
 pub(super) fn once(diagnostics: &mut Vec<Diagnostic>) {
     let mut seen = rustc_hash::FxHashSet::default();
     diagnostics.retain(|d| {
+        // The instance is no part of the key: all instances of a class share the places.
         let places: Vec<Span> = d.labels.iter().map(|l| l.span).collect();
         places.is_empty() || seen.insert((d.code, places))
     });
@@ -52,6 +55,9 @@ fn retain_indexed(diagnostics: &mut Vec<Diagnostic>, keep: impl Fn(usize, &Diagn
 /// Shortens what is said about the texts of libraries. Warnings there are for those who write them, so they are
 /// dropped. Of several errors the first one stays, with a note that counts the others: these are in classes that are
 /// not the user's, or follow from the first one.
+///
+/// A text belongs to a library if its file is in one of the folders of `Request::libraries`; shipped classes are not
+/// meant.
 pub(super) fn of_libraries(diagnostics: &mut Vec<Diagnostic>, sources: &Sources, request: &Request) {
     let of_library = |span: Span| {
         let file = Path::new(sources.get(span.file).path.as_str());
@@ -72,6 +78,7 @@ pub(super) fn of_libraries(diagnostics: &mut Vec<Diagnostic>, sources: &Sources,
 
 /// Messages about libraries of other versions than the user's classes use, as in `uses(Modelica(version = "3.2.3"))`,
 /// unless the library says that nothing has to be converted from that version (MLS 18.8).
+/// The code is W028.
 pub(super) fn other_versions(library: &mut Library<'_>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for id in library.own.clone() {

@@ -67,6 +67,7 @@ pub struct FrontEndResult {
 }
 
 /// Compiles up to the sorted equations. Returns the flat model, the graph of its components and the sorted system.
+/// Unit warnings come before the messages of the structural analysis.
 pub fn sort(world: &dyn World, request: &Request) -> CompileOutcome<(FlatModel, ComponentGraph, Dae)> {
     let CompileOutcome { sources, mut diagnostics, value } = flatten(world, request);
     let value = value.and_then(|f| {
@@ -80,6 +81,7 @@ pub fn sort(world: &dyn World, request: &Request) -> CompileOutcome<(FlatModel, 
 }
 
 /// Sorts the equations of a flat model. Where they do not determine the unknowns, the diagnostics say why.
+/// It uses the default choice of states.
 pub fn analyze(flat: &FlatModel) -> StageResult<Dae> {
     let mut checked = structure::analyze(flat, &StateChoice::default());
     if checked.diagnostics.iter().any(is_structural) {
@@ -95,6 +97,7 @@ fn is_structural(d: &Diagnostic) -> bool {
 
 /// The messages of the first level at which something is wrong: a cause in one component is reported instead of its
 /// consequences. `found` itself where no such cause shows.
+/// The structural analysis is repeated on changed models to see whether an open port is to blame.
 fn explained(flat: &FlatModel, found: Vec<Diagnostic>) -> Vec<Diagnostic> {
     let solvable = |changed: &FlatModel| structure::analyze(changed, &StateChoice::default()).value.is_some();
     let causes = flat::explain(flat, &solvable);
@@ -108,6 +111,7 @@ pub fn flatten(world: &dyn World, request: &Request) -> CompileOutcome<FrontEndR
 
 /// Compiles up to the flat model and calls `look` with it, with the component tree and with the connections that it was
 /// made from. `look` is not called where there are errors.
+/// The tree and the connections are borrowed: they do not outlive the call.
 pub fn inspect<T>(
     world: &dyn World,
     request: &Request,
@@ -132,6 +136,8 @@ pub fn graph(world: &dyn World, request: &Request) -> CompileOutcome<(String, Co
 
 /// Finds the class of a request, calls `act` with it, and puts the messages of all stages together. The value is `None`
 /// if any message is an error.
+///
+/// Class trees live as long as this function, which is why callers act inside it.
 fn with_class<T>(
     world: &dyn World,
     request: &Request,
@@ -166,6 +172,7 @@ fn with_class<T>(
 }
 
 /// Folders with packages, in order of precedence: those of the request, then what ships with bramah.
+/// A package of the user's folders hides one that ships with bramah.
 fn roots<'a>(world: &'a dyn World, shipped: &'a ShippedWorld, request: &Request) -> Vec<(&'a dyn World, PathBuf)> {
     let own = request.libraries.iter().map(|l| (world, l.clone()));
     own.chain(ShippedWorld::roots().map(|r| (shipped as &dyn World, r))).collect()
@@ -201,6 +208,8 @@ fn with_network<T>(
 }
 
 /// The class that a request means. Reads the files that it names. `Err` where there is none, or several.
+///
+/// The source is a path, or the dotted name of a shipped class if there is no such file.
 fn find_model<'a>(
     world: &'a dyn World,
     library: &mut Library<'a>,
@@ -241,6 +250,7 @@ fn no_such_shipped(name: &str) -> Diagnostic {
 }
 
 /// Adds a message for each top-level class of the user that hides a shipped one of the same name.
+/// The code is N026, a note.
 fn note_shadowed(library: &mut Library<'_>) {
     for id in library.own.clone() {
         let ident = library.class(id).name;
@@ -258,6 +268,7 @@ fn note_shadowed(library: &mut Library<'_>) {
 }
 
 /// The class of a name: a full name, or one relative to a class of the source. `Err` suggests the nearest name.
+/// The code is E022.
 fn named_model(library: &mut Library<'_>, given: &[ClassId], name: &str) -> Result<ClassId, Box<Diagnostic>> {
     if let Some(id) = library.find(name) {
         return Ok(id);
@@ -327,6 +338,7 @@ pub fn runnable(world: &dyn World, request: &Request) -> Result<Vec<RunnableMode
 
 /// The model of a request without a name: the only class with an `experiment`, or the only class that can run. `Err`
 /// lists the candidates.
+/// The code is E022.
 fn only_model(library: &mut Library<'_>, source: &Path, given: &[ClassId]) -> Result<ClassId, Box<Diagnostic>> {
     let mut runnable = Vec::new();
     given.iter().for_each(|&id| collect_runnable(library, id, &mut runnable));
@@ -355,6 +367,7 @@ fn only_model(library: &mut Library<'_>, source: &Path, given: &[ClassId]) -> Re
 }
 
 /// Appends the models of a class and its nested packages that can run: models and blocks that are not partial.
+/// Nested packages are searched, nested models of models are not.
 fn collect_runnable(library: &mut Library<'_>, id: ClassId, out: &mut Vec<ClassId>) {
     let class = library.class(id);
     if matches!(class.kind, ClassKind::Model | ClassKind::Block | ClassKind::Class) && !class.prefixes.partial {

@@ -18,6 +18,9 @@ use rustc_hash::FxHashSet;
 
 impl<'a> EquationFlattener<'_, 'a, '_> {
     /// Translates a section. `initial` sections give initial equations.
+    ///
+    /// Loops over known ranges are executed; a section with other loops is refused (E017) unless the instance can make
+    /// a program of it. The order of the results is: equations, clauses, assertions.
     pub(super) fn algorithm(&mut self, section: &'a [Statement], view: LookupContext, initial: bool) {
         let (mut always, mut in_when) = (Vec::new(), Vec::new());
         assigned(section, false, &mut always, &mut in_when);
@@ -68,6 +71,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
 
     /// Adds an `assert` or `terminate` of a section outside `when`. One of an initial section counts at the start only:
     /// a `terminate` there becomes an action of `when initial()`.
+    /// A `terminate` in a section that is not initial is reported (E021).
     pub(super) fn algorithm_call(&mut self, call: AlgorithmCall, view: LookupContext, initial: bool) {
         let span = call.span;
         let origin = self.origin(span, view);
@@ -92,6 +96,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
 
     /// Adds an `assert` or `terminate` inside a `when` to the actions of its branch. A call without a condition is a
     /// `terminate`.
+    /// `when` equations use it for the calls inside them as well.
     pub(super) fn algorithm_action(&mut self, call: AlgorithmCall, view: LookupContext, out: &mut Vec<WhenAction>) {
         let origin = self.origin(call.span, view);
         if call.condition.is_none() {
@@ -102,6 +107,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// Reports a section that could not be executed, unless another error explains it.
+    /// The code is E017; the help is to move the section into a function.
     pub(super) fn section_failed(&mut self, section: &'a [Statement]) {
         if !self.instance.diagnostics.iter().any(Diagnostic::is_error)
             && let Some(first) = section.first()
@@ -119,6 +125,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
 
     /// The value of an element before the section. A scalar that the section assigns holds its `pre` value if it is
     /// discrete, else its start value (MLS 11.1.2). A scalar that it does not assign is itself.
+    ///
+    /// Scalars that are assigned inside a `when`, and scalars that are not Real, are discrete.
     pub(super) fn algorithm_start(
         &mut self,
         own: &ModelicaValue,
@@ -139,6 +147,9 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
 
     /// Adds one equation for each scalar that the section changes. Scalars that a `when` assigns are left to the
     /// clause.
+    ///
+    /// The place of all equations is the first statement of the section.
+    /// Initial sections give initial equations.
     fn section_results(
         &mut self,
         originals: &[AlgorithmTarget],
@@ -164,6 +175,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// Adds the clause of a `when` statement: an assignment for each scalar of its branches, then its assertions.
+    /// Only the scalars in `in_when` are assigned; for the others the section has equations.
+    /// Branches keep their order and conditions.
     fn algorithm_when(&mut self, when: AlgorithmWhen, originals: &[AlgorithmTarget], view: LookupContext) {
         let origin = self.origin(when.span, view);
         let mut made = WhenClause { branches: Vec::new(), origin };
@@ -192,6 +205,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
 }
 
 /// An element of which a section assigns something.
+/// A record or an array that is assigned in parts is one target.
 struct AlgorithmTarget {
     /// Its name.
     name: Symbol,
@@ -203,6 +217,7 @@ struct AlgorithmTarget {
 
 /// Collects the scalars of a value that references name. `targets` are the parts of the references below the value; an
 /// empty one names all of it. Of an array all elements count, whatever the indices say.
+/// So an algorithm that assigns `x[i]` counts as one that may assign every element of `x`.
 fn scalars_of(value: &ModelicaValue, targets: &[&[ast::ReferencePart]], found: &mut FxHashSet<ExprId>) {
     match value {
         _ if targets.iter().any(|parts| parts.is_empty()) => found.extend(value.all_scalars()),
@@ -227,6 +242,8 @@ fn scalars_of(value: &ModelicaValue, targets: &[&[ast::ReferencePart]], found: &
 ///
 /// Where one of them reads what another assigns, or a branch does not assign the variable, they stay as they are; the
 /// variable is then determined twice, which is reported later.
+///
+/// The merged clause lists the branches of the last statement first. It is placed after the last of the statements.
 fn in_order(
     instance: &Instance<'_, '_>,
     mut whens: Vec<AlgorithmWhen>,

@@ -17,6 +17,8 @@ const MOST_PLACES: usize = 6;
 
 /// What seems wrong, at the first level that shows anything: signals, then each component, then the whole model. One
 /// message for each class, since all its instances have the same fault.
+///
+/// Components that cannot be judged alone are skipped. If no component is found wrong, the whole model is counted.
 pub(super) fn doubts(
     instance: &Instance<'_, '_>,
     signals: &SignalConnections<'_>,
@@ -45,6 +47,8 @@ pub(super) fn doubts(
 
 /// The count of the whole model, where some components could not be judged alone. `None` where it is balanced or all
 /// components were judged.
+///
+/// The code is E202. Equations of connections count here, and so do the inputs of components, which are unknowns.
 fn whole(flat: &FlatModel, census: &BalanceCensus) -> Option<Diagnostic> {
     if !census.unjudged.contains(&true) {
         return None;
@@ -68,6 +72,7 @@ fn whole(flat: &FlatModel, census: &BalanceCensus) -> Option<Diagnostic> {
 }
 
 /// Makes the message about one component with the wrong number of equations.
+/// It is made only for components whose counts differ.
 struct BalanceChecker<'j, 'a, 'l> {
     /// The component tree, for places of declarations.
     instance: &'j Instance<'a, 'l>,
@@ -83,6 +88,9 @@ struct BalanceChecker<'j, 'a, 'l> {
 
 impl BalanceChecker<'_, '_, '_> {
     /// The message: counts, what the equations are needed for, and places.
+    ///
+    /// The code is E201. The first place is the name of the class, since the fault is in the class and not in one
+    /// instance.
     fn verdict(&self) -> Diagnostic {
         let (owed, brought) = (self.census.owed[self.at as usize], self.census.brought[self.at as usize]);
         let info = &self.flat.instances[self.at as usize];
@@ -123,6 +131,7 @@ impl BalanceChecker<'_, '_, '_> {
 
     /// Adds the variables that no equation mentions. A two-port that lacks one equation gets advice to balance its
     /// flows.
+    /// At most [`MOST_PLACES`] variables are shown. A variable inside a port is shown at the port.
     fn too_few(&self, mut made: Diagnostic, missing: usize) -> Diagnostic {
         let mentioned = self.mentioned();
         let mut shown = 0;
@@ -150,6 +159,7 @@ impl BalanceChecker<'_, '_, '_> {
     }
 
     /// Adds the equations of the component, or the one that contains no unknown.
+    /// If the component has bindings, the help says that a variable with a binding needs no further equation.
     fn too_many(&self, mut made: Diagnostic, brought: usize) -> Diagnostic {
         let own: Vec<&FlatEquation> = self.equations().collect();
         let idle = |e: &&&FlatEquation| {
@@ -182,6 +192,7 @@ impl BalanceChecker<'_, '_, '_> {
     }
 
     /// Variables in equations, connections and `when`s of the component.
+    /// Derivatives count as well as values. The equations of open ports do not count.
     fn mentioned(&self) -> FxHashSet<VarId> {
         let here = |instance: u32| self.census.owner[instance as usize] == self.at;
         let all =
@@ -193,6 +204,7 @@ impl BalanceChecker<'_, '_, '_> {
     }
 
     /// The name of a variable as seen from inside the component.
+    /// Names in other components stay complete.
     fn local(&self, variable: usize) -> String {
         let name = &self.flat.variables[variable].name;
         let prefix = &self.flat.instances[self.at as usize].name;

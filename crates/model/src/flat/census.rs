@@ -56,6 +56,8 @@ pub(super) struct BalanceCensus {
 impl BalanceCensus {
     /// Takes the census. `scopes` are the component instances in the order of `FlatModel::instances`. `constraints`
     /// lists the overconstrained records with their variables and the number of their constraints.
+    ///
+    /// The counts are over `FlatModel::equations` and `whens`, so this must come after all equations are written.
     pub(super) fn take(
         instance: &Instance<'_, '_>,
         network: &Network,
@@ -85,6 +87,7 @@ impl BalanceCensus {
     }
 
     /// Gives each variable its role and finds uneven ports.
+    /// A variable in a protected connector counts as the component's own, since nothing outside can be joined to it.
     fn roles(
         &mut self,
         instance: &Instance<'_, '_>,
@@ -150,6 +153,7 @@ impl BalanceCensus {
 
     /// The outermost connector around a variable inside its component, and whether it can be seen from outside. `None`
     /// for a variable in no connector.
+    /// `at` is the instance that declares the variable, `name` its full name.
     fn place(
         &self,
         instance: &Instance<'_, '_>,
@@ -177,12 +181,14 @@ impl BalanceCensus {
     }
 
     /// Marks a component and the one around it as not to be judged alone.
+    /// The balance of the one around depends on the connections of the port.
     fn doubt(&mut self, component: u32) {
         self.unjudged[component as usize] = true;
         self.unjudged[self.around[component as usize] as usize] = true;
     }
 
     /// Counts the equations that components bring by themselves.
+    /// Equations of connections are counted by [`Self::connections`].
     fn equations(&mut self, flat: &FlatModel) {
         for e in &flat.equations {
             let owner = self.owner[e.origin.instance as usize];
@@ -214,6 +220,7 @@ impl BalanceCensus {
 
     /// Counts the equations that connections bring to the component in which they stand: one for each joined pair of
     /// signals, one for each flow or stream of its own ports that is joined inside.
+    /// Flows of inside connectors are owed by the components that contain them.
     fn connections(&mut self, instance: &Instance<'_, '_>, network: &Network, scopes: &[ScopeId]) {
         let numbers = ComponentNumbers::new(scopes);
         for set in &network.flows {
@@ -237,7 +244,7 @@ impl BalanceCensus {
         let mut groups = VariableGroups::default();
         for pair in &network.signals {
             let at = numbers.of(pair.scope);
-            // A pair that closes a circle says nothing new.
+            // A pair of variables that are joined already adds no equation.
             if groups.join((at, pair.a), (at, pair.b)) {
                 self.brought[at as usize] += 1;
             }
@@ -245,7 +252,8 @@ impl BalanceCensus {
         for set in &network.potentials {
             for &(i, _) in &set.members {
                 let data = &instance.variables[i as usize];
-                // A joined variable that is neither signal nor potential: the count cannot tell who owes its equation.
+                // A joined variable that is neither signal nor potential: it is not clear which component owes its
+                // equation.
                 if data.causality.is_none() && self.role[data.id.index()] == BalanceRole::Own {
                     self.doubt(self.holder[data.id.index()]);
                 }
@@ -254,6 +262,7 @@ impl BalanceCensus {
     }
 
     /// Counts what components owe. An input without a binding is owed by the component around.
+    /// Potentials and parameters are owed by nobody.
     fn debts(&mut self) {
         for (i, role) in self.role.iter().enumerate() {
             let holder = self.holder[i] as usize;
@@ -286,6 +295,7 @@ pub(super) fn as_variable(flat: &FlatModel, e: ExprId) -> Option<VarId> {
 }
 
 /// By instance: the component that it is part of.
+/// Parents come before their parts, so one pass is enough.
 fn components(instance: &Instance<'_, '_>, flat: &FlatModel, scopes: &[ScopeId]) -> Vec<u32> {
     let mut owner: Vec<u32> = Vec::with_capacity(scopes.len());
     for (i, &scope) in (0u32..).zip(scopes) {
@@ -301,12 +311,14 @@ fn components(instance: &Instance<'_, '_>, flat: &FlatModel, scopes: &[ScopeId])
 }
 
 /// Whether the class of a scope is a connector.
+/// Expandable connectors count as well.
 fn is_connector(instance: &Instance<'_, '_>, scope: ScopeId) -> bool {
     matches!(instance.scope(scope).template.kind, ClassKind::Connector { .. })
 }
 
 /// Disjoint sets of variables. A key is the component in which variables are joined, and the variable, so each set
 /// stays within one component.
+/// The same variable may be in groups of two components: the one that contains it and the one around.
 #[derive(Default)]
 pub(super) struct VariableGroups {
     /// By key: a key nearer to the root. A key without an entry is a root.
@@ -323,6 +335,7 @@ impl VariableGroups {
     }
 
     /// Joins two sets. True if they were apart.
+    /// The set of the second key is attached to that of the first.
     pub(super) fn join(&mut self, a: (u32, u32), b: (u32, u32)) -> bool {
         let (a, b) = (self.root(a), self.root(b));
         if a != b {

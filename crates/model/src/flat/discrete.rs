@@ -11,6 +11,8 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Reports all violations. The expressions are still those of the instance.
+///
+/// Codes: E210 for values of the wrong variability, E303 for two `reinit`s.
 pub(super) fn check(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     let assigned: FxHashSet<VarId> = flat.whens.iter().flat_map(WhenClause::assigned).collect();
     check_equations(instance, flat, &assigned);
@@ -30,6 +32,10 @@ fn bare(instance: &Instance<'_, '_>, e: &FlatEquation) -> impl Iterator<Item = (
 
 /// Checks equations for `discrete` Reals and Integers. A value that changes between events is an error unless another
 /// equation gives the variable a discrete value. A `discrete` Real must get its value in a `when`.
+///
+/// Three messages are possible: a `discrete` variable outside of `when`, an Integer that changes all the time, and a
+/// `discrete` variable that does. Values that contain calls or conditions are not judged, because they may be constant
+/// between events.
 fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHashSet<VarId>) {
     // Discrete unknowns outside of `when`: those that a `when` assigns are determined there.
     let stepping = |v: VarId| {
@@ -84,6 +90,7 @@ fn check_equations(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: 
 
 /// Checks that a value assigned in a `when` does not read the variable itself: `n = n + 1` asks for a whole number that
 /// is its own successor; `pre(n) + 1` was meant. For a Real it would be an equation that can be solved.
+/// The help is to write `pre(n)`.
 fn check_own_values(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     for action in flat.whens.iter().flat_map(|w| &w.branches).flat_map(|b| &b.actions) {
         let WhenAction::Assign { variable, value, origin } = action else { continue };
@@ -101,6 +108,7 @@ fn check_own_values(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
 
 /// Checks that `reinit` of one variable occurs in one `when` clause only (MLS 8.3.6). If two fired at once, the value
 /// would be undefined. Only the first conflict is reported.
+/// The help is one clause with `elsewhen`, whose order decides.
 fn check_reinits(instance: &mut Instance<'_, '_>, flat: &FlatModel) {
     let mut first: FxHashMap<VarId, (usize, Span)> = FxHashMap::default();
     for (clause, when) in flat.whens.iter().enumerate() {
@@ -131,7 +139,8 @@ fn is_smooth(instance: &Instance<'_, '_>, e: ExprId) -> bool {
     !instance.exprs.reachable(&[e], |_| true).iter().any(steps)
 }
 
-/// Checks that `pre` of a continuous variable does not occur outside `when` clauses.
+/// Checks that `pre` of a continuous variable does not occur outside `when` clauses. The clauses themselves are not
+/// searched, since `pre` is allowed there.
 fn check_pre(instance: &mut Instance<'_, '_>, flat: &FlatModel, assigned: &FxHashSet<VarId>) {
     let smooth = |v: VarId| {
         let variable = flat.variables.get(v.index());

@@ -50,6 +50,9 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// Reads the sections of all components, in their order, and of all base classes of each.
+    ///
+    /// The sections of a base class are read with the names of that base (its [`LookupContext`]). Diagnostics that come
+    /// up in a component get the place of the outermost component that contains it.
     pub(super) fn walk(&mut self, scopes: &[ScopeId]) {
         for &scope in scopes {
             let mark = self.instance.diagnostics.len();
@@ -69,6 +72,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// Reads the sections of one class body. Assertions of initial sections hold at the start only.
+    ///
+    /// The order is: equations, initial equations, algorithms, initial algorithms.
     pub(super) fn body(&mut self, body: &'a ast::LongBody, view: LookupContext) {
         let pairs = self.equations(&body.equations, view);
         self.push(pairs, view, false);
@@ -87,12 +92,14 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// The origin of what stands at a place in a component.
+    /// The kind is `Declared`.
     pub(super) fn origin(&self, span: Span, view: LookupContext) -> ElementOrigin {
         let instance = self.numbers.of(view.scope);
         ElementOrigin { span, instance, kind: OriginKind::Declared }
     }
 
     /// Appends scalar equations to the model or to its initial equations.
+    /// All of them belong to the component of `view`.
     pub(super) fn push(&mut self, pairs: Vec<EquationSides>, view: LookupContext, initial: bool) {
         for p in pairs {
             let origin = self.origin(p.span, view);
@@ -106,6 +113,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// The scalar equations of a list. `when`, `assert` and calls go straight into the flat model.
+    /// The order is that of the text; loops are unrolled in place.
+    /// A `when` inside an `if` that is not decided is reported.
     pub(super) fn equations(&mut self, equations: &'a [ast::Equation], view: LookupContext) -> Vec<EquationSides> {
         let mut pairs = Vec::new();
         for e in equations {
@@ -117,6 +126,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
 
     /// Adds assertions that the equation just read needs to have a meaning, such as those of called functions, under
     /// the conditions around it.
+    /// It is called after each equation, because the instance collects the calls of all expressions that it evaluates.
     pub(super) fn watch(&mut self, view: LookupContext) {
         let mut calls = self.instance.statements().take_calls();
         for call in &mut calls {
@@ -143,6 +153,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
 
     /// Unrolls a `for` equation (MLS 8.3.2): reads the body once for each combination of values of its iterators, the
     /// last iterator fastest.
+    ///
+    /// The range must be known before the run. The iterator is a local name of the instance while the body is read.
     pub(super) fn for_equation(
         &mut self,
         iterators: &'a [ast::ForIndex],
@@ -165,6 +177,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// Reads an equation between two expressions. A tuple on the left takes the results of a call.
+    /// A side that cannot be evaluated has a message already and gives no equation.
     pub(super) fn equal(
         &mut self,
         l: &'a Expr,
@@ -185,6 +198,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
 
     /// Reads `(a, , b) = f(x)`: one equation for each target that is given. The call may have more results than
     /// targets.
+    ///
+    /// Too many targets are reported (E021). A single result counts as a tuple of one.
     pub(super) fn tuple(
         &mut self,
         targets: &'a [Option<Expr>],
@@ -215,6 +230,8 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
 
     /// Appends one scalar equation for each pair of elements of two values. Reports values of different shape or type,
     /// and texts, which have no equations.
+    ///
+    /// Codes: E210 for different types, E211 for different sizes.
     pub(super) fn equal_values(
         &mut self,
         a: &ModelicaValue,
@@ -246,6 +263,9 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
 
     /// Reads an `if` equation. A condition over parameters selects its branch now (MLS 8.3.4); any other becomes part
     /// of conditional equations.
+    ///
+    /// `branches` are the conditions with their equations, `otherwise` is the `else` branch. The function calls itself
+    /// for the branches after the first. A condition that is no Boolean is reported (E210).
     pub(super) fn if_equation(
         &mut self,
         branches: &'a [(Expr, Vec<ast::Equation>)],
@@ -295,6 +315,9 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
 
     /// Merges the equations of two branches into conditional ones: `if c then a = x; else a = y;` becomes
     /// `a = if c then x else y`. Branches must have the same number of equations (MLS 8.3.4).
+    ///
+    /// `a` are the equations of the branch for `test`, `b` those of the other one. Different numbers are reported
+    /// (E201).
     pub(super) fn merge(
         &mut self,
         test: ExprId,
@@ -329,6 +352,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
 
     /// Reads `Connections.conserved(quantity, rate, state)`, of scalars. It is no statement of the MLS but of this
     /// compiler.
+    /// Wrong arguments are reported (E021).
     pub(super) fn conserved(&mut self, call: &'a Expr, view: LookupContext, span: Span) {
         const FORM: &str =
             "`Connections.conserved(quantity, rate, state)` takes three real numbers, the last one a variable";
@@ -348,17 +372,20 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// A condition that needs to hold at the start only.
+    /// It is `initial()` implies the condition.
     pub(super) fn at_start_only(&mut self, condition: ExprId) -> ExprId {
         let start = self.instance.exprs.intern(ExprNode::Initial);
         self.instance.exprs.implies(start, condition)
     }
 
     /// Reports a call that is not as it must be.
+    /// The code is E021.
     pub(super) fn bad_call(&mut self, span: Span, message: &str) {
         self.instance.diagnostics.push(Diagnostic::new(Code::BadCall, message).at(span, ""));
     }
 
     /// Reports a call that is allowed inside `when` only.
+    /// The help shows a `when` around the call.
     pub(super) fn only_in_when(&mut self, name: &str, span: Span) {
         self.instance.diagnostics.push(
             Diagnostic::new(Code::BadCall, format!("`{name}` can only stand inside a `when`"))
@@ -368,6 +395,9 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// Reads an equation that is a call: `assert`, a statement about connections, or a function without results.
+    ///
+    /// `reinit` and `terminate` are reported, since they are allowed in `when` only. Assertions in a called function
+    /// become assertions of the model.
     pub(super) fn call(&mut self, call: &'a Expr, view: LookupContext, span: Span) {
         let ExprKind::Call { function, .. } = &call.kind else { return };
         match function.parts[0].name.name.as_str() {
@@ -394,6 +424,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// Appends an assertion under the conditions around it. One that always holds is dropped.
+    /// The guards become premises: `g` implies the condition.
     pub(super) fn push_guarded(&mut self, assert: Option<FlatAssertion>) {
         let Some(mut assert) = assert else { return };
         for guard in self.guards.clone().into_iter().rev() {
@@ -405,6 +436,7 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
     }
 
     /// Reads an `assert`. `None` after a message.
+    /// The level is `error` or `warning`.
     pub(super) fn assertion(&mut self, call: &'a Expr, view: LookupContext, span: Span) -> Option<FlatAssertion> {
         let AssertArguments { condition, message: text, warning } = self.instance.statements().assertion(call, view)?;
         Some(FlatAssertion { condition, message: message(text), warning, origin: self.origin(span, view) })
@@ -413,11 +445,12 @@ impl<'w, 'a, 'l> EquationFlattener<'w, 'a, 'l> {
 
 /// Appends assertions that expressions need to have a meaning, each once. `holder` is the component that contains the
 /// expressions.
+/// One call may come up more than once.
 pub(super) fn watch(instance: &mut Instance<'_, '_>, flat: &mut FlatModel, calls: Vec<AlgorithmCall>, holder: u32) {
     for call in calls {
         let origin = ElementOrigin { span: call.span, instance: holder, kind: OriginKind::Declared };
         let Some(assert) = assert_of(instance, call, origin) else { continue };
-        // Repetitions come from one expression, so the last few assertions are enough to compare with.
+        // Only the last few assertions are compared, so that the search stays short.
         let known = |a: &FlatAssertion| a.condition == assert.condition && a.origin.span == origin.span;
         if assert.condition != Exprs::ONE && !flat.asserts.iter().rev().take(8).any(known) {
             flat.asserts.push(assert);
@@ -436,6 +469,7 @@ pub(super) fn assert_of(
 }
 
 /// The template of a message text, with adjacent texts joined. Empty without a text.
+/// Values stay expressions and are evaluated when the message is shown.
 pub(super) fn message(text: Option<ModelicaValue>) -> MessageTemplate {
     match text {
         Some(ModelicaValue::Text(parts)) => {

@@ -1,7 +1,7 @@
 //! Flattening: from the component tree to scalar variables and equations.
 //!
 //! [`flatten`] is the entry of the module. It numbers the components, makes the variables with their attributes and
-//! bindings, lets [`EquationFlattener`] walk the equation sections, writes the equations of connections (MLS 9.2), and
+//! bindings, lets `EquationFlattener` walk the equation sections, writes the equations of connections (MLS 9.2), and
 //! checks the balance of the components.
 
 use super::census::BalanceCensus;
@@ -22,6 +22,9 @@ use bramah_syntax::symbol::Symbol;
 /// Flattens an instance. The expression pool and the diagnostics of the instance move into the result.
 ///
 /// The result always has a value; it may have errors among its diagnostics.
+///
+/// `network` must be that of the instance. Codes: E212 and E213 for values, E103 and W107 for ports, E105 for joined
+/// outputs; what `EquationFlattener` and `discrete` report comes on top.
 pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResult<FlatModel> {
     let scopes = component_scopes(instance);
     let mut flat = FlatModel { class: class_name(instance, instance.root), ..FlatModel::default() };
@@ -71,11 +74,13 @@ pub fn flatten(instance: &mut Instance<'_, '_>, network: &Network) -> StageResul
 }
 
 /// The full name of the class of a scope.
+/// Messages and pictures show it.
 fn class_name(instance: &Instance<'_, '_>, scope: ScopeId) -> String {
     instance.library.full_name(instance.scope(scope).template.class)
 }
 
 /// The record of a component for messages. The model itself, which has no owner, is its own parent.
+/// Parents have smaller numbers than their parts, so the number of the parent is known.
 fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &ComponentNumbers) -> InstanceInfo {
     let s = instance.scope(scope);
     let parent = s.owner.map_or(0, |owner| numbers.of(owner));
@@ -83,6 +88,7 @@ fn instance_info(instance: &Instance<'_, '_>, scope: ScopeId, numbers: &Componen
 }
 
 /// Makes all variables, in declaration order.
+/// The place of a variable in the list is its `VarId`.
 fn variables(instance: &mut Instance<'_, '_>, numbers: &ComponentNumbers, flat: &mut FlatModel) {
     flat.variables.reserve_exact(instance.order.len());
     for k in 0..instance.order.len() {
@@ -93,6 +99,8 @@ fn variables(instance: &mut Instance<'_, '_>, numbers: &ComponentNumbers, flat: 
 }
 
 /// Makes the flat variable of entry `i` of `Instance::variables`, with attributes and binding.
+///
+/// A parameter is settable from outside if it is neither `final` nor protected. `stateSelect` is kept for Reals only.
 fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &ComponentNumbers, flat: &mut FlatModel) -> FlatVariable {
     let data = &instance.variables[i as usize];
     let origin = ElementOrigin { span: data.span, instance: numbers.of(data.scope), kind: OriginKind::Declared };
@@ -119,6 +127,7 @@ fn variable(instance: &mut Instance<'_, '_>, i: u32, numbers: &ComponentNumbers,
 }
 
 /// Whether a unit measures temperature: K, degC and others of the same dimension.
+/// For such a variable it matters whether it is a difference.
 fn is_temperature(unit: &str) -> bool {
     let parse = bramah_expr::units::MeasurementUnit::parse;
     matches!((parse(unit), parse("K")), (Ok(unit), Ok(kelvin)) if unit.dimension == kelvin.dimension)
@@ -126,6 +135,10 @@ fn is_temperature(unit: &str) -> bool {
 
 /// Evaluates the attributes of a variable. A `start`, `min`, `max` or `nominal` that changes during the run is an
 /// error.
+///
+/// All other attributes are ignored here. `unit` and `displayUnit` are texts, kept as written.
+/// `fixed` and `unbounded` must be known now, the others may depend on parameters.
+/// A value of the wrong type is reported when it is coerced to the type of the variable.
 fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
     for k in 0..instance.variables[i as usize].attributes.len() {
         let (name, b) = instance.variables[i as usize].attributes[k].clone();
@@ -189,6 +202,10 @@ fn attributes(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
 /// [`StartValueConfidence`].
 ///
 /// The place is where the value is written, or further out where one of the parameters in it gets its value.
+///
+/// For `start = p` with `p` bound in the model to a number, the place is the model, whatever the class of the component
+/// says. The reach is the depth of the place less that of the variable: 0 where the component that declares the
+/// variable gives the value itself.
 fn given(instance: &Instance<'_, '_>, variable: u32, written: ScopeId, start: Option<ExprId>) -> (u32, i32) {
     let mut least = depth(instance, written);
     for parameter in start.into_iter().flat_map(|e| instance.exprs.variables(e)) {
@@ -210,6 +227,7 @@ fn given(instance: &Instance<'_, '_>, variable: u32, written: ScopeId, start: Op
 const LONGEST_CHAIN: usize = 30;
 
 /// The parameter that a binding consists of; `None` where it is any other expression, or a name with dots.
+/// Only such bindings pass a value on unchanged.
 fn lone_parameter(instance: &Instance<'_, '_>, view: LookupContext, expr: &ast::Expr) -> Option<VarId> {
     let ast::ExprKind::Reference(r) = &expr.kind else { return None };
     let [part] = r.parts.as_slice() else { return None };
@@ -222,6 +240,7 @@ fn lone_parameter(instance: &Instance<'_, '_>, view: LookupContext, expr: &ast::
 
 /// The number of components around the elements of a scope, 0 for the model itself. `u32::MAX` for scopes outside the
 /// model, such as packages.
+/// It says how near to the user a modifier was written.
 fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
     let mut depth = 0;
     while scope != instance.root {
@@ -234,6 +253,10 @@ fn depth(instance: &Instance<'_, '_>, mut scope: ScopeId) -> u32 {
 
 /// Evaluates the binding of a variable. It stays with a parameter, a constant or a top-level input; for other variables
 /// it becomes an equation (MLS 4.4).
+///
+/// A parameter or constant must not depend on what changes during the run (E212), a constant not on parameters. A
+/// top-level input keeps its binding as a default and starts there. The binding of a stream variable also goes to the
+/// mixture, as what leaves.
 fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: &mut FlatModel) {
     let parameter = v.variability <= Variability::Parameter;
     // The binding of a stream variable of a port applies only where the component has no parts joined to the port.
@@ -292,6 +315,9 @@ fn binding(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable, flat: 
 }
 
 /// A parameter without a binding takes its start value (MLS 8.6). Without that it is an error.
+///
+/// The code is E213. The help shows a modifier and the option `--set`. Free parameters are not asked for a value.
+/// With a start value there is no message, since it may have been given on purpose.
 fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) {
     if v.start.is_some() {
         v.binding = v.start;
@@ -312,6 +338,9 @@ fn missing_value(instance: &mut Instance<'_, '_>, i: u32, v: &mut FlatVariable) 
 }
 
 /// Appends the equations of connections: potentials equal, flows summed, open flows zero (MLS 9.2).
+///
+/// The order is: potentials, flows, members of buses without a connection, open flows. The origin of an equation is the
+/// `connect` that brought its member, or the declaration of an open port.
 fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &ComponentNumbers, flat: &mut FlatModel) {
     // A set of `n` potentials gives `n - 1` equations, each with the first member.
     for set in &network.potentials {
@@ -355,6 +384,9 @@ fn connections(instance: &mut Instance<'_, '_>, network: &Network, numbers: &Com
 }
 
 /// The `experiment` annotation of the model, or else of the first class that it extends and that has one.
+///
+/// Times are in seconds. Arguments that are no literal numbers are ignored.
+/// A class without the annotation inherits that of its base, as a whole.
 fn experiment(instance: &mut Instance<'_, '_>) -> ExperimentAnnotation {
     let template = instance.scope(instance.root).template.clone();
     let mut experiment = ExperimentAnnotation::default();
@@ -375,6 +407,7 @@ fn experiment(instance: &mut Instance<'_, '_>) -> ExperimentAnnotation {
 }
 
 /// The modification of `name` among the arguments of an annotation.
+/// `None` where the annotation does not mention it.
 fn argument<'m>(m: &'m Modification, name: &str) -> Option<&'m Modification> {
     let wanted = Symbol::new(name);
     m.arguments.iter().find_map(|a| match &a.kind {

@@ -16,7 +16,7 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::BTreeMap;
 
-/// Connectors with different numbers of potentials and flows (MLS 9.3.1), each class once.
+/// Connectors with different numbers of potentials and flows (MLS 9.3.1), each class once. They are warnings (W107).
 pub(super) fn uneven(
     instance: &Instance<'_, '_>,
     flat: &FlatModel,
@@ -50,6 +50,7 @@ pub(super) fn uneven(
 ///
 /// In other domains an open port has a meaning: a free shaft, no heat, no current. An open hydraulic port would spill
 /// oil; whoever means a closed one says so by a plug.
+/// The code is E103.
 pub(super) fn open_lines(flat: &FlatModel, census: &BalanceCensus) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for e in flat.equations.iter().filter(|e| e.origin.kind == OriginKind::OpenPort) {
@@ -71,6 +72,7 @@ fn is_volume_flow(flat: &FlatModel, v: VarId) -> bool {
 }
 
 /// The message about one open port, given its flow and the component it belongs to.
+/// The help shows the `connect` with a plug.
 fn open_port(flat: &FlatModel, flow: VarId, component: u32) -> Diagnostic {
     let variable = &flat.variables[flow.index()];
     let port = &flat.instances[variable.origin.instance as usize];
@@ -105,6 +107,9 @@ pub(super) struct SignalConnections<'s> {
 
 impl<'s> SignalConnections<'s> {
     /// Groups the joined signals.
+    ///
+    /// Each component has groups of its own: a signal that passes through a port belongs to one group outside and one
+    /// inside.
     pub(super) fn new(
         instance: &Instance<'_, '_>,
         network: &Network,
@@ -140,6 +145,7 @@ impl<'s> SignalConnections<'s> {
     }
 
     /// Signals that cannot work: inputs with two sources, then inputs without a value.
+    /// The codes are E105 and E106.
     pub(super) fn doubts(&self) -> Vec<Diagnostic> {
         let mut found = self.two_sources(|_| true);
         found.extend(self.without_source());
@@ -169,12 +175,13 @@ impl<'s> SignalConnections<'s> {
     }
 
     /// A message for each group that has two sources, among those for which `wanted` is true.
+    /// The places are the `connect`s that brought the first and the last source.
     fn two_sources(&self, wanted: impl Fn(&[(VarId, Span)]) -> bool) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         for (&(level, _), members) in self.groups.iter().filter(|(_, members)| wanted(members)) {
             let sources: Vec<_> = members.iter().filter(|(v, _)| self.is_source(level, *v)).collect();
             let [(a, at_a), .., (b, at_b)] = sources.as_slice() else { continue };
-            // A member that needs a value gives the message a place to speak of.
+            // The member that needs a value is named in the help.
             let fed = members.iter().find(|(v, _)| !self.is_source(level, *v));
             let place = fed.map_or(String::new(), |(v, _)| format!(" of `{}`", self.name(*v)));
             let made = Diagnostic::new(
@@ -190,6 +197,9 @@ impl<'s> SignalConnections<'s> {
 
     /// A message for each input of a component that gets no value. Of inputs that are joined with each other only one
     /// is reported.
+    ///
+    /// An input has a value if it has a binding, if an equation around its component mentions it, or if its group has a
+    /// source.
     fn without_source(&self) -> Vec<Diagnostic> {
         let mut found = Vec::new();
         let mut reported: FxHashSet<(u32, u32)> = FxHashSet::default();
@@ -222,6 +232,7 @@ impl<'s> SignalConnections<'s> {
     }
 
     /// The message about one input. `group` are the signals that it is joined with, if any.
+    /// The code is E106.
     fn no_value(&self, v: VarId, holder: u32, group: Option<&[(VarId, Span)]>) -> Diagnostic {
         let info = &self.flat.instances[holder as usize];
         let name = self.name(v);
@@ -241,6 +252,8 @@ impl<'s> SignalConnections<'s> {
 
 /// Variables that an equation or `when` outside their own component mentions. Empty where no component has inputs,
 /// since only then they are asked for.
+///
+/// Such an equation may give an input its value instead of a connection.
 fn mentioned(flat: &FlatModel, census: &BalanceCensus) -> FxHashSet<VarId> {
     let mut found = FxHashSet::default();
     let inputs = census.role.iter().zip(&census.holder).any(|(r, h)| *r == BalanceRole::Input && *h != 0);

@@ -12,6 +12,8 @@ use std::fmt::Write;
 impl FlatModel {
     /// The model as text: variables, equations, `when` clauses, assertions, conserved quantities and initial equations,
     /// each in the order of the model.
+    ///
+    /// `when` conditions are always printed as arrays, and names are not quoted.
     pub fn text(&self) -> String {
         let mut out = format!("model '{}'\n", self.class);
         for variable in &self.variables {
@@ -46,6 +48,7 @@ impl FlatModel {
     }
 
     /// Appends a section with its title and its equations.
+    /// An equation takes one line.
     fn section(&self, out: &mut String, title: &str, equations: &[FlatEquation]) {
         let _ = writeln!(out, "{title}");
         for e in equations {
@@ -54,6 +57,7 @@ impl FlatModel {
     }
 
     /// The declaration of a variable: prefixes, type, name, modifiers, binding, description.
+    /// An example is `parameter Real tank.V(unit = "m3") = 0.1 "volume";`.
     fn declaration(&self, v: &FlatVariable) -> String {
         let mut text = String::new();
         for (holds, word) in [(v.hidden, "protected "), (v.flow, "flow "), (v.input, "input "), (v.output, "output ")] {
@@ -86,6 +90,7 @@ impl FlatModel {
     }
 
     /// The attributes of a variable that differ from their defaults.
+    /// Each is printed as `name = value`; texts are quoted.
     fn modifiers(&self, v: &FlatVariable) -> Vec<String> {
         let quoted = |name: &str, text: &Option<Box<str>>| text.as_ref().map(|t| format!("{name} = {t:?}"));
         let value = |name: &str, e: Option<ExprId>| e.map(|e| format!("{name} = {}", self.expr(e)));
@@ -103,6 +108,7 @@ impl FlatModel {
     }
 
     /// Appends a `when` clause. Each branch lists its conditions as an array, as the flat model has it.
+    /// The first branch begins with `when`, the others with `elsewhen`.
     fn when(&self, out: &mut String, when: &WhenClause) {
         for (i, branch) in when.branches.iter().enumerate() {
             let conditions: Vec<String> = branch.conditions.iter().map(|&c| self.expr(c)).collect();
@@ -116,6 +122,7 @@ impl FlatModel {
     }
 
     /// A statement of a `when` as text.
+    /// A guard is printed as an `if` around the statement.
     fn action(&self, action: &WhenAction) -> String {
         match action {
             WhenAction::Assign { variable, value, .. } => format!("{} = {}", self.name(*variable), self.expr(*value)),
@@ -135,6 +142,7 @@ impl FlatModel {
     }
 
     /// A message as a concatenation of texts and values.
+    /// Values are printed as `String(value)`.
     fn message(&self, message: &MessageTemplate) -> String {
         let part = |part: &MessagePart| match part {
             MessagePart::Text(text) => format!("{text:?}"),

@@ -7,6 +7,7 @@ use bramah_expr::ExprId;
 
 impl FlatModel {
     /// Drops expressions that nothing refers to. All `ExprId`s of the model are renumbered.
+    /// `flatten` calls it if the model has functions.
     pub(super) fn compact(&mut self) {
         let mut pool = std::mem::take(&mut self.exprs);
         pool.compact(&mut self.roots());
@@ -14,6 +15,7 @@ impl FlatModel {
     }
 
     /// References to all expressions that the model holds.
+    /// They come in a fixed order: variables, equations, clauses, assertions, conserved quantities.
     fn roots(&mut self) -> Vec<&mut ExprId> {
         let mut roots: Vec<&mut ExprId> = Vec::new();
         for v in &mut self.variables {

@@ -14,6 +14,7 @@ use petgraph::unionfind::UnionFind;
 
 /// Stores in the instance which stream variables are joined. Outside connectors are those of the component that
 /// contains the connections.
+/// The sets keep the order of [`Network::streams`].
 pub(super) fn prepare(instance: &mut Instance<'_, '_>, network: &Network) {
     for set in &network.streams {
         let number = instance.streams.sets.len();
@@ -63,6 +64,9 @@ fn junctions(instance: &mut Instance<'_, '_>) {
 
 /// Appends an equation for each stream variable of a port whose component has parts joined to it: what leaves is the
 /// mixture of what the parts send there.
+///
+/// At a junction it is what the mixing component sends out. The same expression is noted in the instance, where
+/// `inStream` of others reads it.
 pub(super) fn equations(
     instance: &mut Instance<'_, '_>,
     network: &Network,

@@ -14,6 +14,10 @@ use bramah_syntax::diag::{Code, Diagnostic, Span};
 
 impl<'a> EquationFlattener<'_, 'a, '_> {
     /// Reads a `when` equation and appends its clause. All branches must determine the same variables.
+    ///
+    /// `branches` are the `when` and its `elsewhen`s in order of priority; a condition may be an array, any element of
+    /// which fires the branch. Branches that determine different variables are reported (E201).
+    /// Conditions that cannot be evaluated drop their branch; they have a message already.
     pub(super) fn when_equation(
         &mut self,
         branches: &'a [(Expr, Vec<ast::Equation>)],
@@ -45,6 +49,10 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
 
     /// Reports two lists of variables that differ: the branches of a `when`, and of an `if` in it, must determine the
     /// same variables (MLS 8.3.5.2). `of` is `when` or `if`.
+    ///
+    /// The message names one variable that differs and whether it is missing here or extra. The help writes `v =
+    /// pre(v)`, which keeps the value. The code is E201.
+    /// Nothing happens if the lists agree, whatever their order.
     pub(super) fn same_variables(&mut self, a: &[VarId], b: &[VarId], of: &str, span: Span) {
         let alone = |a: &[VarId], b: &[VarId]| a.iter().find(|v| !b.contains(v)).copied();
         let (where_, variable) = match (alone(a, b), alone(b, a)) {
@@ -63,6 +71,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// Reports a `when` inside an `if` equation whose condition changes during the run.
+    /// The help moves the condition into the `when`. The code is E021.
+    /// Such a clause would act at some times only.
     pub(super) fn when_under_if(&mut self, span: Span) {
         let message = "a `when` cannot stand inside an `if` whose condition changes during the run";
         self.instance.diagnostics.push(
@@ -74,6 +84,11 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
 
     /// Reads one equation in a `when` and appends its actions to `out`. `guard` is the condition of the `if`s around it
     /// inside the `when`.
+    ///
+    /// Allowed are equations, `for`, `if` and calls; a `when` or `connect` inside is reported. Array equations give one
+    /// action for each element.
+    ///
+    /// Assertions of called functions become actions of the branch.
     pub(super) fn when_body(
         &mut self,
         e: &'a ast::Equation,
@@ -111,6 +126,9 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// Unrolls a `for` equation inside a `when`.
+    /// The range must be known before the run, as in other equations.
+    /// One action per element and value results.
+    /// The local name of the iterator exists only while its body is read.
     pub(super) fn when_for(
         &mut self,
         iterators: &'a [ast::ForIndex],
@@ -134,6 +152,11 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// Reads an `if` equation inside a `when`: both branches are read, each with its condition as an additional guard.
+    ///
+    /// The guard of a branch is its condition and not that of any earlier branch. The actions of all branches go to one
+    /// list; the assignments to one variable are merged by [`Self::when_assign`]. Branches that determine different
+    /// variables are reported (E201), because the MLS demands it of conditions that change.
+    /// An `if` without `else` has an empty last branch.
     pub(super) fn when_if(
         &mut self,
         branches: &'a [(Expr, Vec<ast::Equation>)],
@@ -176,6 +199,7 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// Records that the branch determines a variable. False, with a message, if it does so already.
+    /// The code is E303. The list is that of the branch being read: see `EquationFlattener::determined`.
     pub(super) fn determine(&mut self, variable: VarId, span: Span) -> bool {
         let again = self.determined.contains(&variable);
         if again {
@@ -187,6 +211,8 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// Reports that a variable gets a value twice. `how` completes the sentence that begins with its name.
+    /// The code is E303.
+    /// The help is to remove one of the two.
     pub(super) fn twice(&mut self, variable: VarId, how: &str, span: Span) {
         let name = &self.flat.variables[variable.index()].name;
         let d = Diagnostic::new(Code::Overdetermined, format!("`{name}` {how}"));
@@ -195,6 +221,9 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
 
     /// Appends an assignment. Under a guard that does not hold, the variable keeps what it would get otherwise: the
     /// value of an earlier assignment in the other branch of an `if`, or its `pre` value.
+    ///
+    /// The variable may be on either side; an equation without a lone variable is reported (E017). For `if g then x =
+    /// a; else x = b; end if` the result is one action `x = if not g then b else if g then a else pre(x)`.
     pub(super) fn when_assign(
         &mut self,
         p: EquationSides,
@@ -234,6 +263,10 @@ impl<'a> EquationFlattener<'_, 'a, '_> {
     }
 
     /// Reads `reinit`, `assert`, `terminate` or a function without outputs in a `when`.
+    ///
+    /// `reinit` of an array gives one action for each element. Two `reinit`s of one variable are reported (E303) if
+    /// they have the same guard or one of them has none. A function with outputs is reported (E021).
+    /// Messages of `assert` and `terminate` may contain values.
     pub(super) fn when_call(
         &mut self,
         call: &'a Expr,

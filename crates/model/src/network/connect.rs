@@ -19,6 +19,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Union-find over variables. A key is a variable and whether it is seen as an outside connector; keys get numbers in
 /// the order in which they come.
+///
+/// The structure keeps insertion order, so that the network is the same for the same text.
 #[derive(Default)]
 struct ConnectionSets {
     /// By key: its number.
@@ -72,6 +74,7 @@ impl ConnectionSets {
 }
 
 /// One side of a `connect`.
+/// A single port is an array without dimensions.
 struct ConnectionEnd {
     /// The ports that it names, with the sizes of the array if it is one.
     selection: NodeSelection,
@@ -80,6 +83,7 @@ struct ConnectionEnd {
 }
 
 /// Collects connections while the components are walked.
+/// Sets are built in the order in which connections are met.
 #[derive(Default)]
 pub(super) struct ConnectionCollector {
     /// The result so far.
@@ -147,6 +151,8 @@ impl ConnectionCollector {
 
     /// Joins overconstrained components along the spanning trees of their graph. The other connections become
     /// constraints.
+    ///
+    /// The chosen roots go to the instance, where `Connections.isRoot` and `Connections.rooted` read them.
     fn overconstrained(&mut self, instance: &mut Instance<'_, '_>) {
         let (links, spanned) = std::mem::take(&mut self.forest).span(instance);
         for (link, kept) in links.into_iter().zip(spanned.kept) {
@@ -161,6 +167,7 @@ impl ConnectionCollector {
     }
 
     /// Reads the equation sections of one component, with those of its base classes.
+    /// The names in a base class are looked up there.
     fn scope<'a>(&mut self, instance: &mut Instance<'a, '_>, scope: ScopeId) {
         let template = instance.scope(scope).template.clone();
         for (base, i) in template.bases.iter().zip(0u32..) {
@@ -171,6 +178,7 @@ impl ConnectionCollector {
     }
 
     /// Reads the connections in a list of equations. `for` loops are unrolled, `if` branches selected.
+    /// Connections that a `break` modifier removes are skipped.
     fn equations<'a>(
         &mut self,
         instance: &mut Instance<'a, '_>,
@@ -210,6 +218,9 @@ impl ConnectionCollector {
     }
 
     /// Reads one `connect`. Both sides must be ports, different ones, and arrays of the same size.
+    ///
+    /// Both sides may be arrays of ports; they are joined element by element. Errors: a side that is no port, both
+    /// sides the same port, different sizes (E105).
     fn connect<'a>(
         &mut self,
         instance: &mut Instance<'a, '_>,
@@ -224,6 +235,7 @@ impl ConnectionCollector {
         if !all_ports(instance, &x, a.span) || !all_ports(instance, &y, b.span) {
             return;
         }
+        // A port joined to itself would give the equation `p = p`.
         if x.selection.nodes == y.selection.nodes {
             let name = instance.node_name(x.selection.nodes[0]);
             instance.diagnostics.push(
@@ -254,6 +266,7 @@ impl ConnectionCollector {
     }
 
     /// Joins two nodes. A connection of overconstrained components is put aside until the spanning trees are known.
+    /// `true` beside a node marks an outside connector.
     fn join(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &ConnectSite) {
         if instance.builder().is_overconstrained(a.0) && instance.builder().is_overconstrained(b.0) {
             self.forest.links.push(OverconstrainedLink { a: a.0, b: b.0, span: at.span, scope: at.scope });
@@ -264,6 +277,7 @@ impl ConnectionCollector {
 
     /// Joins two nodes of the same kind: variables, arrays element by element, or connectors and records member by
     /// member.
+    /// Different kinds are reported (E104).
     fn join_alike(&mut self, instance: &mut Instance<'_, '_>, a: (NodeId, bool), b: (NodeId, bool), at: &ConnectSite) {
         match (instance.node(a.0).clone(), instance.node(b.0).clone()) {
             (InstanceNode::Var(x), InstanceNode::Var(y)) => self.join_variables(instance, (x, a.1), (y, b.1), at),
@@ -280,6 +294,9 @@ impl ConnectionCollector {
     }
 
     /// Joins two connectors or records, which must have members of the same names (MLS 9.3).
+    ///
+    /// Members are matched by name, so that their order does not matter. Different members are reported as E104 between
+    /// connectors, else as E105.
     fn join_objects(
         &mut self,
         instance: &mut Instance<'_, '_>,
@@ -322,6 +339,9 @@ impl ConnectionCollector {
 
     /// Joins two scalar variables. Both must be flows or none, and of one type and dimension. Parameters are compared
     /// instead of joined.
+    ///
+    /// A pair with an input or output is also recorded as a signal pair, from which `flat` finds signals with two
+    /// sources.
     fn join_variables(&mut self, instance: &mut Instance<'_, '_>, a: (u32, bool), b: (u32, bool), at: &ConnectSite) {
         let (x, y) = (&instance.variables[a.0 as usize], &instance.variables[b.0 as usize]);
         if x.flow != y.flow || x.ty != y.ty {
@@ -361,7 +381,7 @@ impl ConnectionCollector {
 }
 
 /// Checks that constants and parameters of joined connectors are of one variability and have one value (MLS 9.3).
-/// Values that are not known yet are not compared.
+/// Values that are not known yet are not compared. Values that agree to nine digits count as equal. The code is E105.
 fn same_parameters(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &ConnectSite) {
     let of = |i: u32| &instance.variables[i as usize];
     let (kinds, names) = ([a, b].map(|i| of(i).variability), [a, b].map(|i| of(i).name.clone()));
@@ -398,6 +418,7 @@ pub fn component_scopes(instance: &Instance<'_, '_>) -> Vec<ScopeId> {
 }
 
 /// Whether a list of equations contains `connect` or a statement about the connection graph, at any depth.
+/// It saves evaluating loops and conditions for nothing.
 fn concerns_network(equations: &[Equation]) -> bool {
     equations.iter().any(|e| match &e.kind {
         EquationKind::Connect(..) => true,
@@ -413,6 +434,7 @@ fn concerns_network(equations: &[Equation]) -> bool {
 }
 
 /// The branch of an `if` equation that holds. `None`, after a message, where a condition is not known.
+/// It is the `else` part, which may be empty, where no condition holds.
 fn choose<'a>(
     instance: &mut Instance<'a, '_>,
     branches: &'a [(Expr, Vec<Equation>)],
@@ -428,6 +450,7 @@ fn choose<'a>(
 }
 
 /// The ports that a side of `connect` names. `None` after a message, `Some(None)` if a conditional component is absent.
+/// A side must be a name; any other expression is reported.
 fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: LookupContext) -> Option<Option<ConnectionEnd>> {
     let ExprKind::Reference(r) = &e.kind else {
         instance.diagnostics.push(
@@ -453,6 +476,7 @@ fn end<'a>(instance: &mut Instance<'a, '_>, e: &'a Expr, view: LookupContext) ->
 }
 
 /// Whether all nodes of an end are ports. Reports the first that is none.
+/// For a component the help lists its ports.
 fn all_ports(instance: &mut Instance<'_, '_>, end: &ConnectionEnd, span: Span) -> bool {
     let Some(&node) = end.selection.nodes.iter().find(|&&n| !is_port(instance, n)) else { return true };
     let name = instance.node_name(node);
@@ -477,6 +501,7 @@ fn all_ports(instance: &mut Instance<'_, '_>, end: &ConnectionEnd, span: Span) -
 }
 
 /// The public ports of a component, in backticks.
+/// They are listed in the order of declaration.
 fn port_names(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<String> {
     let template = instance.scope(scope).template.clone();
     let mut names = Vec::new();
@@ -493,6 +518,7 @@ fn port_names(instance: &mut Instance<'_, '_>, scope: ScopeId) -> Vec<String> {
 
 /// Whether a node may stand in a `connect`: a connector or record, an array of such, or a variable that is part of one,
 /// an input or output, or of a connector type.
+/// An empty array counts as one of ports.
 fn is_port(instance: &mut Instance<'_, '_>, node: NodeId) -> bool {
     match instance.node(node).clone() {
         InstanceNode::Object(s) => {
@@ -552,6 +578,7 @@ fn is_connector(instance: &mut Instance<'_, '_>, scope: ScopeId, index: u32, vie
 }
 
 /// Reports two nodes of different kinds.
+/// The code is E104.
 fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &ConnectSite) {
     let (x, y) = (instance.node_name(a), instance.node_name(b));
     instance.diagnostics.push(
@@ -563,6 +590,7 @@ fn mismatch(instance: &mut Instance<'_, '_>, a: NodeId, b: NodeId, at: &ConnectS
 }
 
 /// What a node is, for messages.
+/// Examples are "an input signal" and "a `Hydraulic.Port`".
 fn what_it_is(instance: &Instance<'_, '_>, node: NodeId) -> String {
     match instance.node(node) {
         InstanceNode::Var(i) => match instance.variables[*i as usize].causality {
@@ -579,6 +607,7 @@ fn what_it_is(instance: &Instance<'_, '_>, node: NodeId) -> String {
 
 /// Whether the units of two variables have different dimensions; ports with such variables belong to different domains.
 /// Reports it. Missing and unreadable units fit anywhere.
+/// The code is E104; the help is a component that changes one quantity into the other.
 fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &ConnectSite) -> bool {
     if instance.variables[a as usize].ty != ScalarType::Real {
         return false;
@@ -611,6 +640,7 @@ fn different_units(instance: &mut Instance<'_, '_>, a: u32, b: u32, at: &Connect
 
 /// Whether a `break` modifier of the class that extends this one takes the connection away: by itself, or with one of
 /// its components (MLS 7.4).
+/// The two sides may be given in either order.
 fn is_broken(base: &BaseClass<'_>, a: &Expr, b: &Expr) -> bool {
     let names = |e: &Expr| match &e.kind {
         ExprKind::Reference(r) => r.parts.first().is_some_and(|p| base.broken_components.contains(&p.name.name)),

@@ -12,9 +12,10 @@ use std::collections::BTreeMap;
 pub struct ComponentBox {
     /// Its name.
     pub name: String,
-    /// The full name of its class; empty for a port of the model itself.
+    /// The full name of its class; empty where it has none of its own, as a signal of the model.
     pub class: String,
     /// The classes that it extends, nearest first.
+    /// The own class is not among them.
     pub bases: Vec<String>,
     /// The names of its connected ports, in the order of the connections.
     pub ports: Vec<String>,
@@ -37,10 +38,12 @@ pub type ComponentGraph = UnGraph<ComponentBox, ComponentEdge>;
 impl Network {
     /// The graph of the model's top level. Nodes and edges come in the order of the connections; components without a
     /// connection are not in it.
+    /// `plot` draws it, and the diagnosis looks for places in it.
     pub fn graph(&self, instance: &Instance<'_, '_>) -> ComponentGraph {
         let mut graph = ComponentGraph::default();
         let mut known: BTreeMap<String, NodeIndex> = BTreeMap::new();
         let classes = component_classes(instance);
+        // Connections inside components belong to the pictures of these.
         for c in self.connections.iter().filter(|c| c.scope == instance.root) {
             let (a, b) = (instance.node_name(c.a), instance.node_name(c.b));
             let connector = connector_class(instance, c.a);
@@ -73,6 +76,7 @@ fn node_of(
         graph.add_node(ComponentBox { name: component.into(), class, bases, ports: Vec::new() })
     });
     let ports = &mut graph[index].ports;
+    // A port with several connections is listed once.
     if !ports.iter().any(|p| p == port) {
         ports.push(port.into());
     }

@@ -80,6 +80,8 @@ impl VirtualConnectionGraph {
     }
 
     /// Reads `Connections.branch`, `root` or `potentialRoot`. Reports calls with the wrong number of arguments.
+    /// The code is E021. An argument that is no overconstrained component is reported by the instance.
+    /// Arguments are names of overconstrained components.
     pub(super) fn add<'a>(
         &mut self,
         instance: &mut Instance<'a, '_>,
@@ -121,6 +123,8 @@ impl VirtualConnectionGraph {
     ///
     /// The order decides what is kept: branches first, then stated roots, then connections as far as they join two
     /// trees of which at most one has a root, then potential roots by priority for trees without a root (MLS 9.4.2).
+    ///
+    /// Two roots joined by branches are reported, and trees without a root (E105).
     pub(super) fn span(mut self, instance: &mut Instance<'_, '_>) -> (Vec<OverconstrainedLink>, SpanningForest) {
         let links = std::mem::take(&mut self.links);
         let ends: Vec<(usize, usize)> = links.iter().map(|l| (self.number(l.a), self.number(l.b))).collect();
@@ -163,6 +167,7 @@ impl VirtualConnectionGraph {
     }
 
     /// Reports a tree in which nothing can be a root. `node` is one of its nodes.
+    /// The help is to connect a component that fixes the reference.
     fn no_root(
         &self,
         instance: &mut Instance<'_, '_>,
@@ -227,6 +232,7 @@ impl DisjointTrees {
 }
 
 /// By node: its distance from its root, found breadth first. `usize::MAX` for nodes that no root reaches.
+/// All roots start at distance 0.
 fn depths(count: usize, edges: &[(usize, usize)], roots: &[usize]) -> Vec<usize> {
     let mut beside: Vec<Vec<usize>> = vec![Vec::new(); count];
     for &(a, b) in edges {

@@ -16,6 +16,9 @@ use bramah_syntax::diag::Diagnostic;
 
 /// Removes alias equations and rewrites every expression in terms of the representatives. Contradicting start values go
 /// to `diagnostics`. The aliases come out in ascending order of the eliminated variable.
+///
+/// Equations that define aliases are removed. Equations that repeat an alias become `0 = 0`. Aliases of given values
+/// (inputs) keep the input as their representative.
 pub(super) fn eliminate(
     draft: &mut DaeDraft,
     known: &mut parameters::SignAnalysis,
@@ -73,6 +76,7 @@ pub(super) enum AliasEquation {
 
 /// Reads an equation as an alias equation. `None` where it has more than two terms, factors other than plus or minus
 /// one, or leaves that are neither variables nor derivatives.
+/// Examples: `a = b`, `a + b = 0`, `-a = b`, `w = der(x)`, `0 = -a`.
 pub(super) fn simple_form(pool: &Exprs, equation: &FlatEquation) -> Option<AliasEquation> {
     let mut terms = AliasTerms::default();
     terms.collect(pool, equation.lhs, false, 0)?;
@@ -131,6 +135,7 @@ impl AliasTerms {
 }
 
 /// Whether two variables may be aliases: both continuous, or both discrete, of one type and with the same sign.
+/// Booleans and other discrete types have no negative that could be an alias.
 fn may_join(draft: &DaeDraft, a: VarId, b: SignedVariable) -> bool {
     let continuous = |v: VarId| {
         let real = draft.variables[v.index()].ty == ScalarType::Real;
@@ -169,6 +174,9 @@ fn share_guess(draft: &mut DaeDraft, parameter: VarId, equal: SignedVariable) {
 
 /// Processes equations `w = der(x)`: links `x` to `w` unless that closes a circle. If `x` has a derivative already, `w`
 /// becomes an alias of it. An equation that a link or a join expresses is not kept.
+///
+/// Each entry of `links` is the number of an equation, the variable `w` and the variable `x` of `w = der(x)`, both
+/// signed. `kept` is set to false for equations that are expressed by links.
 fn link_derivatives(
     draft: &mut DaeDraft,
     classes: &mut AliasClasses,
@@ -224,6 +232,7 @@ impl AliasClasses {
     }
 
     /// The root of a variable's set, and the sign of the variable relative to it. Compresses the path.
+    /// Almost constant time on average.
     fn find(&mut self, v: VarId) -> SignedVariable {
         let mut root = SignedVariable { variable: v, negated: false };
         while self.parent[root.variable.index()].variable != root.variable {
@@ -242,6 +251,7 @@ impl AliasClasses {
     }
 
     /// The root of a signed variable, with the combined sign.
+    /// Two negatives cancel.
     fn find_signed(&mut self, v: SignedVariable) -> SignedVariable {
         let root = self.find(v.variable);
         SignedVariable { variable: root.variable, negated: root.negated != v.negated }
@@ -249,6 +259,9 @@ impl AliasClasses {
 
     /// Makes `a` equal `b`. False where that is impossible (two given values, or a circle of derivatives) or where both
     /// are in one set already; then the equation stays.
+    ///
+    /// Joining two variables also joins their derivatives, if both have one. So one alias equation may make several
+    /// pairs equal.
     fn join(&mut self, draft: &DaeDraft, a: VarId, b: SignedVariable) -> bool {
         let (a, b) = (self.find(a), self.find_signed(b));
         if a.variable == b.variable || !self.gifts_fit(a.variable, b.variable) || !self.chains_fit(a, b) {
@@ -269,6 +282,7 @@ impl AliasClasses {
 
     /// Whether two sets may be joined as far as given variables go. Two given variables stay apart. A given variable
     /// and a member of a chain of derivatives stay apart too: the chain would lose the equation that determines it.
+    /// A set without given values may be joined with any other, as far as this rule goes.
     fn gifts_fit(&self, a: VarId, b: VarId) -> bool {
         let linked = |v: VarId| self.derivative[v.index()].is_some() || self.integral[v.index()].is_some();
         match (self.given[a.index()], self.given[b.index()]) {
@@ -280,6 +294,7 @@ impl AliasClasses {
     }
 
     /// Whether the derivatives of both, as far as they are linked, can be made equal too. Walks both chains upwards.
+    /// False where the chains would form a circle, or where a variable would equal its own negative.
     fn chains_fit(&mut self, a: SignedVariable, b: SignedVariable) -> bool {
         let (mut a, mut b) = (a, b);
         while a.variable != b.variable {
@@ -300,6 +315,7 @@ impl AliasClasses {
 
     /// Moves the links of `small` to `large` after `small` joined it. If both have a derivative, these become equal
     /// too.
+    /// The sign of `large` is that of `small` relative to it.
     fn carry_links(&mut self, draft: &DaeDraft, small: VarId, large: SignedVariable) {
         if let Some(of) = self.integral[small.index()].take() {
             // Both sides of a link stay valid after joins, because readers look up the root.
@@ -320,6 +336,8 @@ impl AliasClasses {
     /// Makes `d` the derivative of the root `of`. If `of` has a derivative already, the two are joined instead. False
     /// where one of the two is given from outside, where `d` is the derivative of another variable already, or where a
     /// circle would close; then the equation stays.
+    ///
+    /// `of` must be a root. The derivative may be any member of its set; readers look up its root.
     fn link(&mut self, draft: &DaeDraft, of: VarId, d: SignedVariable) -> bool {
         if let Some(own) = self.derivative[of.index()] {
             let same = SignedVariable { variable: own.variable, negated: own.negated != d.negated };
@@ -354,6 +372,7 @@ impl AliasClasses {
 
     /// Whether joining two sets breaks the chains: two members of one chain would make it a circle, and derivatives of
     /// different variables would make a variable the derivative of two.
+    /// Sets without links are joined without further tests.
     fn would_close_circle(&mut self, a: VarId, b: VarId) -> bool {
         let linked = |s: &Self, v: VarId| s.derivative[v.index()].is_some() || s.integral[v.index()].is_some();
         if !linked(self, a) && !linked(self, b) {
@@ -371,6 +390,7 @@ impl AliasClasses {
     /// Chooses the representative of each set and stores the links between representatives in the draft. By variable:
     /// its representative with the sign. `differentiated` adds the variables of link equations, which may have been
     /// removed.
+    /// Linear in the number of variables; ties go to the variable declared first.
     fn settle(&mut self, draft: &mut DaeDraft, differentiated: impl Iterator<Item = VarId>) -> Vec<SignedVariable> {
         let count = draft.variables.len();
         let ranks = ranks(draft, differentiated);
@@ -415,6 +435,7 @@ fn aliases(targets: &[SignedVariable]) -> Vec<Alias> {
 type AliasRank = (bool, bool, StateSelect, bool, bool, bool, bool, std::cmp::Reverse<usize>, std::cmp::Reverse<usize>);
 
 /// The rank of every variable.
+/// `named` are variables that are differentiated by equations that the links have replaced.
 fn ranks(draft: &mut DaeDraft, named: impl Iterator<Item = VarId>) -> Vec<AliasRank> {
     let mut differentiated = vec![false; draft.variables.len()];
     named.for_each(|v| differentiated[v.index()] = true);
@@ -441,6 +462,9 @@ fn ranks(draft: &mut DaeDraft, named: impl Iterator<Item = VarId>) -> Vec<AliasR
 
 /// Merges the attributes of an alias into its target: start and `fixed`, `nominal`, `stateSelect`, and whether a `when`
 /// assigns it. `min` and `max` are not merged.
+///
+/// Two starts that both are conditions are compared by [`compare_starts`]. `nominal` is taken over where the target has
+/// none.
 fn merge(draft: &mut DaeDraft, known: &mut parameters::SignAnalysis, alias: Alias, diagnostics: &mut Vec<Diagnostic>) {
     let from = draft.variables[alias.variable.index()].clone();
     let start = from.start.map(|e| if alias.negated { draft.exprs.neg(e) } else { e });
@@ -466,6 +490,7 @@ fn merge(draft: &mut DaeDraft, known: &mut parameters::SignAnalysis, alias: Alia
 
 /// The `stateSelect` of an alias set: the strongest wish for a state counts; without one, the strongest wish against
 /// it.
+/// `always` beats `prefer`, `never` beats `avoid`, and any wish for a state beats a wish against one.
 fn merged_select(a: StateSelect, b: StateSelect) -> StateSelect {
     match (a, b) {
         (StateSelect::Default, other) | (other, StateSelect::Default) => other,
@@ -476,6 +501,7 @@ fn merged_select(a: StateSelect, b: StateSelect) -> StateSelect {
 
 /// Compares two starts that both are conditions. Values that differ now are reported. Others become an initial check,
 /// because parameters may change between runs.
+/// The tolerance is relative, so that rounding of unit conversions is no contradiction.
 fn compare_starts(
     draft: &mut DaeDraft,
     known: &mut parameters::SignAnalysis,
@@ -501,6 +527,7 @@ fn compare_starts(
 }
 
 /// Replaces aliases and linked derivatives in all expressions, actions and crossings.
+/// `Der(v)` becomes the linked variable if there is one, with the combined sign.
 fn rewrite(draft: &mut DaeDraft, targets: &[SignedVariable]) {
     let derivative = draft.derivative.clone();
     let roles = draft.roles.clone();

@@ -67,6 +67,8 @@ fn settled(flat: &FlatModel, choice: &StateChoice, diagnostics: &mut Vec<Diagnos
 /// Products that are 0 by the parameters in `decisive` are dropped first. Returns, beside the result, the parameters
 /// whose value 0 decides about the structure; the caller may repeat the pass with them. Diagnostics that do not end the
 /// analysis go to `diagnostics`. `Err` is a fault that ends it.
+///
+/// The draft is made anew in each pass, so that nothing of an earlier pass remains in it.
 fn run(
     flat: &FlatModel,
     choice: &StateChoice,
@@ -134,6 +136,7 @@ fn run(
 }
 
 /// Turns `delay`, event-generating expressions and `when` clauses into variables, equations and actions.
+/// The original nodes and clauses are gone afterwards.
 fn make_discrete_equations(draft: &mut DaeDraft) {
     // `delay` first: its stand-in is an input, and relations that read it have to be watched.
     delays::extract(draft);
@@ -145,6 +148,7 @@ fn make_discrete_equations(draft: &mut DaeDraft) {
 ///
 /// It is made from the equations as the user wrote them, before alias elimination, if these are singular too; else from
 /// the reduced ones. For this the flat model is translated anew, without the steps between.
+/// The aliases of the reduced system are needed to name its quantities.
 fn explain_singular(
     flat: &FlatModel,
     reduced: &DaeDraft,
@@ -161,6 +165,7 @@ fn explain_singular(
 }
 
 /// Raises `stateSelect` of what `reinit` sets to `prefer`, since only a state can be set.
+/// It runs before alias elimination, so that the wish passes to the representative.
 fn prefer_reinitialized(draft: &mut DaeDraft) {
     for action in &draft.actions {
         if let EventActionKind::Reinit(v, _) = action.kind {
@@ -203,6 +208,7 @@ fn reinit_of_no_state(draft: &DaeDraft, states: &[VarId]) -> Vec<Diagnostic> {
 }
 
 /// The outcome of state selection.
+/// A variable is in one of the two lists if its derivative occurs.
 struct StatePartition {
     /// Ascending.
     states: Vec<VarId>,
@@ -309,6 +315,7 @@ fn check_matched(draft: &DaeDraft, system: &EquationSystem) -> Result<(), Diagno
 }
 
 /// The three sorted systems, as lists of blocks.
+/// All three end with the assignments in `derivatives`.
 #[derive(Default)]
 struct SystemBlocks {
     /// The system between events.
@@ -351,6 +358,7 @@ impl SystemBlocks {
 }
 
 /// Assignments `der(x) := w` for states whose derivative is a variable `w`, with an equation for each for messages.
+/// The blocks come in the order of the states.
 fn linked_derivatives(draft: &mut DaeDraft, states: &[VarId]) -> Vec<BltBlock> {
     let mut blocks = Vec::new();
     for &x in states {
@@ -382,6 +390,8 @@ struct AnalysisFindings {
 }
 
 /// Puts the [`Dae`] together. Initial checks become residuals, each with an equation for messages.
+///
+/// `Dae::chosen_starts` and further initial checks are added by the caller.
 fn assemble(flat: &FlatModel, mut draft: DaeDraft, blocks: SystemBlocks, rest: AnalysisFindings) -> Dae {
     let mut initial_checks = Vec::new();
     for equation in std::mem::take(&mut draft.initial_checks) {

@@ -22,6 +22,7 @@ pub(super) fn components(nodes: usize, mut successors: impl FnMut(u32, &mut Vec<
         count: 0,
         found: StrongComponents { starts: vec![0], members: Vec::with_capacity(nodes) },
     };
+    // Every node is searched from once, so disconnected parts are found too.
     for node in 0..nodes as u32 {
         if search.index[node as usize] == NONE {
             search.from(node, &mut successors);

@@ -20,6 +20,8 @@ const LONGEST: usize = 64;
 
 /// Replaces sums of which another one leaves a single variable by `variable = 0`. Equations of the model are compared
 /// with each other; initial equations are compared with each other and with those of the model.
+///
+/// For `i1 + i2 + i3 = 0` and `3*i0 = i1 + i2 + i3` the second one becomes `i0 = 0`.
 pub(super) fn replace(draft: &mut DaeDraft, known: &mut SignAnalysis) {
     let mut sums = CancellationRows::default();
     let of_model: Vec<usize> =

@@ -18,6 +18,8 @@ use std::collections::BTreeMap;
 
 /// The first closed group: its flows in ascending order. `None` where there is none. The work grows almost linearly
 /// with the number of terms.
+///
+/// An example is a loop of two resistors: `i1 + i2 = 0` at one node and `-i1 - i2 = 0` at the other.
 pub(super) fn find(draft: &DaeDraft, aliases: &[Alias]) -> Option<Vec<VarId>> {
     let sums = FlowSumFinder::new(draft, aliases).collect();
     let mut uses: Vec<Vec<(u32, FlowFactor)>> = vec![Vec::new(); draft.variables.len()];
@@ -193,6 +195,7 @@ impl<'d> FlowSumFinder<'d> {
     ///
     /// A variable is replaced by its definition, so that equal densities are recognised. `None` for a factor that does
     /// not vary: constant times flow is a resistance, and the equation is no balance.
+    /// The exponent is 1; the numeric part of a factor comes from signs only.
     fn factor(&self, e: ExprId) -> Option<FlowFactor> {
         let exprs = &self.draft.exprs;
         let continuous = |v: &VarId| self.draft.role(*v) == SystemRole::Continuous;

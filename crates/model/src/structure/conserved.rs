@@ -27,6 +27,7 @@ const DEPTH: u32 = 3;
 
 /// The conserved quantities of the states, in the order in which the model states them. A statement about a variable
 /// that is no state is ignored. `states` is ascending.
+/// Statements about one variable form a group: their volumes have one pressure.
 pub(super) fn find(draft: &mut DaeDraft, known: &mut SignAnalysis, states: &[VarId]) -> Vec<ConservedQuantity> {
     if draft.conserved.is_empty() {
         return Vec::new();
@@ -51,6 +52,8 @@ pub(super) fn find(draft: &mut DaeDraft, known: &mut SignAnalysis, states: &[Var
 
 /// The quantity of one state, from all statements about it. Adds the variable of the solver and its equation to the
 /// draft. `None` where the common rate of several volumes cannot be found.
+///
+/// With several statements the quantity is the sum of theirs, and so is the nominal value.
 fn conserved(
     draft: &mut DaeDraft,
     balances: &BalanceEquations,
@@ -78,6 +81,7 @@ fn conserved(
 }
 
 /// The nominal value of a quantity: that of the variable, or 1.
+/// The solver scales its error test with it.
 fn nominal(draft: &DaeDraft, quantity: ExprId) -> ExprId {
     match draft.exprs.node(quantity) {
         ExprNode::Var(v) => draft.variables[v.index()].nominal.unwrap_or(Exprs::ONE),
@@ -86,6 +90,7 @@ fn nominal(draft: &DaeDraft, quantity: ExprId) -> ExprId {
 }
 
 /// The equations that are sums of variables with constant factors, those of connections among them.
+/// It is empty where no state has several statements.
 #[derive(Default)]
 struct BalanceEquations {
     /// The sums.
@@ -124,6 +129,9 @@ impl BalanceEquations {
     ///
     /// Each rate must be `rest + density*flow`. Flows with the same density are summed and replaced by the flows that
     /// enter the group from outside. `None` where a rate has another form or the connections do not determine the sum.
+    ///
+    /// An example is two volumes on one node: `der(m1) = rho*q1 + a`, `der(m2) = rho*q2 + b`, and the connection states
+    /// `q1 + q2 + q3 = 0`. The sum of the rates is `a + b - rho*q3`.
     fn joint_rate(&self, pool: &mut Exprs, rates: &[ExprId]) -> Option<ExprId> {
         let mut sum = Exprs::ZERO;
         let mut flows: Vec<(ExprId, VariableSum)> = Vec::new();
@@ -162,6 +170,7 @@ impl BalanceEquations {
 
     /// An expression with variables replaced by their definitions, up to `depth` definitions deep. Densities at joined
     /// ports are variables of each volume; this makes equal ones the same expression.
+    /// Shared parts are rewritten once.
     fn meaning(&self, pool: &mut Exprs, e: ExprId, depth: u32) -> ExprId {
         let mut images: FxHashMap<ExprId, ExprId> = FxHashMap::default();
         for part in pool.reachable(&[e], |_| true) {
@@ -180,6 +189,9 @@ impl BalanceEquations {
 
     /// The sum of these flows as a sum of other variables. Combines balances along connections until one combination
     /// contains all the flows. `None` where the balances do not connect them, or not with equal factors.
+    ///
+    /// It starts from a balance that contains the first flow. For each further flow it looks for a way to a balance
+    /// with that flow and subtracts the rows on the way, so that the variables they share vanish.
     fn brought(&self, flows: &[(VarId, f64)]) -> Option<VariableSum> {
         let wanted: FxHashSet<VarId> = flows.iter().map(|f| f.0).collect();
         let Some((first, rest)) = flows.split_first() else { return Some(VariableSum::new()) };
@@ -212,6 +224,7 @@ impl BalanceEquations {
     /// The rows that lead from a sum to a row with `flow`, each with the variable that it shares with the sum so far.
     /// Breadth first, so the way is a shortest one. Rows in `used` and variables in `wanted` are not crossed. `None`
     /// where no row with the flow is reachable.
+    /// A row is visited once at most.
     fn way(
         &self,
         from: &VariableSum,

@@ -9,6 +9,7 @@ use bramah_expr::{ExprId, ExprNode, Exprs, VarId};
 
 /// Rewrites the continuous equations in terms of the parameters and numbers. The equations that define the unknowns
 /// stay, so that the unknowns are still computed. Initial equations are not changed.
+/// Nothing happens where no such equation exists.
 pub(super) fn read(draft: &mut DaeDraft) {
     let mut equal: Vec<Option<ExprId>> = vec![None; draft.variables.len()];
     let mut says = vec![false; draft.equations.len()];
@@ -37,6 +38,7 @@ pub(super) fn read(draft: &mut DaeDraft) {
 
 /// The unknown and what it equals, where an equation states just that: `v = 0`, `v = p` or `v = -p` with a parameter
 /// `p`. `None` for all others.
+/// The sign of an alias equation goes into the expression.
 fn constant(draft: &mut DaeDraft, equation: usize) -> Option<(VarId, ExprId)> {
     let is = |v: VarId, role| draft.role(v) == role;
     match alias::simple_form(&draft.exprs, &draft.equations[equation])? {

@@ -32,6 +32,7 @@ pub(super) fn extract(draft: &mut DaeDraft) {
 }
 
 /// Makes the input of one `delay` and returns it as an expression.
+/// The input is named like the expression.
 fn input(draft: &mut DaeDraft, e: ExprId, source: ExprId, time: ExprId) -> ExprId {
     let origin = origin(draft, e);
     let variable = draft.make_variable(draft.text(e), ScalarType::Real, SystemRole::Input, origin);

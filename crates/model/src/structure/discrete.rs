@@ -17,6 +17,9 @@ use petgraph::unionfind::UnionFind;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Translates all `when` clauses and empties the list of them.
+///
+/// `when c then x = e; elsewhen d then x = f; end when` becomes
+/// `x = if edge(c) then e else if edge(d) then f else pre(x)`, where `edge(c)` is `c and not pre(c)` (MLS 8.3.5).
 pub(super) fn translate_whens(draft: &mut DaeDraft) {
     let whens = std::mem::take(&mut draft.whens);
     // One table for all clauses: equal conditions share a variable.
@@ -29,6 +32,7 @@ pub(super) fn translate_whens(draft: &mut DaeDraft) {
 }
 
 /// The Boolean variables made for `when` conditions.
+/// A condition that is a discrete variable already needs none.
 #[derive(Default)]
 struct ConditionVariables {
     /// By condition: its variable.
@@ -38,6 +42,7 @@ struct ConditionVariables {
 impl ConditionVariables {
     /// An expression that is true in the event iteration in which one of the branch's conditions becomes true.
     /// `initial()` is true at the start itself and needs no edge.
+    /// A `when` with several conditions fires when any of them becomes true (MLS 8.3.5).
     fn fires(&mut self, draft: &mut DaeDraft, branch: &WhenBranch, origin: ElementOrigin) -> ExprId {
         let mut fires = Exprs::ZERO;
         for &condition in &branch.conditions {
@@ -51,6 +56,7 @@ impl ConditionVariables {
     }
 
     /// The edge of a condition: `not initial() and c and not pre(c)`.
+    /// At the start itself no condition has an edge (MLS 8.6).
     fn becomes_true(&mut self, draft: &mut DaeDraft, condition: ExprId, origin: ElementOrigin) -> ExprId {
         let v = self.variable(draft, condition, origin);
         let pool = &mut draft.exprs;
@@ -82,6 +88,7 @@ impl ConditionVariables {
 }
 
 /// Adds one equation for each variable that the clause assigns, in order of first appearance.
+/// The equation is a definition: it can be solved for that variable only.
 fn assign_variables(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
     let mut done: Vec<VarId> = Vec::new();
     for action in when.branches.iter().flat_map(|b| &b.actions) {
@@ -98,6 +105,7 @@ fn assign_variables(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
 
 /// The new value of a variable: that of the first branch that fires. A branch that does not assign the variable leaves
 /// it at `pre(variable)`, and so does a clause of which no branch fires.
+/// Of several assignments in one branch the last one counts.
 fn chosen_value(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId], variable: VarId) -> ExprId {
     let before = draft.exprs.pre(variable);
     let mut value = before;
@@ -114,6 +122,9 @@ fn chosen_value(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId], varia
 
 /// Adds the actions for `reinit`, `assert` and `terminate`. Each happens when its branch is the first that fires and
 /// the `if`s around it in the clause hold.
+///
+/// `earlier` collects the conditions of the branches before, which must not have fired. `assert` has no guard of its
+/// own: its condition contains that of the `if`s around it.
 fn add_actions(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
     let mut earlier = Exprs::ZERO;
     for (branch, &fires) in when.branches.iter().zip(fires) {
@@ -138,6 +149,7 @@ fn add_actions(draft: &mut DaeDraft, when: &WhenClause, fires: &[ExprId]) {
 }
 
 /// The variable of an expression `v` or `pre(v)` where `v` is a discrete unknown; else `None`.
+/// Such an expression takes part in the classes of [`absorb_through_equals`].
 fn discrete_atom(draft: &DaeDraft, e: ExprId) -> Option<VarId> {
     match draft.exprs.node(e) {
         ExprNode::Var(v) | ExprNode::Pre(v) if draft.role(v) == SystemRole::Discrete => Some(v),
@@ -158,6 +170,7 @@ fn of_parameters(draft: &DaeDraft, found: &LeafDependencies) -> bool {
 /// Turns initial equations `a = value` into start values of `v` where the model states `a = pre(v)`, directly or
 /// through a chain of equal variables (MLS 8.6). Equal variables and `pre`s form classes; a class that contains a `pre`
 /// and gets one known value passes that value to all its `pre`s as fixed starts.
+/// A class without a known value, and a class with a `fixed` start, keep their equations.
 fn absorb_through_equals(draft: &mut DaeDraft) {
     // A value over parameters alone, which the solver can evaluate before the start.
     let known = |draft: &DaeDraft, e: ExprId| {
@@ -209,6 +222,8 @@ fn absorb_through_equals(draft: &mut DaeDraft) {
 
 /// Turns initial equations `pre(v) = value` into start values of `v` where the value is known before the run. Where it
 /// is not, a free parameter takes the place of `pre(v)`.
+///
+/// The solver takes `pre(v)` at the start from the start value, so it is a known quantity of the initial system then.
 pub(super) fn absorb_initial_pres(draft: &mut DaeDraft) {
     absorb_through_equals(draft);
     let equations = std::mem::take(&mut draft.initial_equations);
@@ -248,6 +263,7 @@ fn with_value_before(draft: &mut DaeDraft, equation: FlatEquation) -> FlatEquati
 
 /// The variable and its start value, if the equation is `pre(v) = value` with a discrete unknown and a value known
 /// before the run. Any `pre(u)` inside the value is replaced by the start of `u`.
+/// So the start does not depend on other values before the start.
 fn given_pre(draft: &mut DaeDraft, equation: &FlatEquation) -> Option<(VarId, ExprId)> {
     let (v, value) = match (draft.exprs.node(equation.lhs), draft.exprs.node(equation.rhs)) {
         (ExprNode::Pre(v), _) => (v, equation.rhs),
@@ -281,6 +297,8 @@ pub(super) fn classify(draft: &mut DaeDraft) {
 }
 
 /// Whether an equation determines a discrete unknown.
+/// An equation between a continuous and a discrete unknown is solved for the continuous one, unless the discrete one is
+/// alone on the left.
 pub(super) fn is_discrete(draft: &DaeDraft, equation: &FlatEquation) -> bool {
     let [left, right] = [equation.lhs, equation.rhs].map(|e| lone_discrete(draft, e));
     if left.is_some_and(|v| may_solve(draft, v)) {
@@ -294,6 +312,7 @@ pub(super) fn is_discrete(draft: &DaeDraft, equation: &FlatEquation) -> bool {
 }
 
 /// Whether an expression depends on a continuous unknown or on a derivative.
+/// Its value may change between events.
 pub(super) fn has_continuous(draft: &DaeDraft, e: ExprId) -> bool {
     let found = draft.exprs.dependencies(&[e]);
     !found.ders.is_empty() || found.vars.iter().any(|&v| draft.role(v) == SystemRole::Continuous)
@@ -314,6 +333,7 @@ pub(super) fn lone_discrete(draft: &DaeDraft, e: ExprId) -> Option<VarId> {
 
 /// The discrete unknowns that a row of the incidence matrix may be solved for. None for a continuous equation; at most
 /// one for a definition, at most two for a discrete equation.
+/// A variable that a `when` assigns is never among those of a discrete equation.
 pub(super) fn lone_unknowns(draft: &DaeDraft, equation: &FlatEquation, kind: EquationRole) -> Vec<VarId> {
     match kind {
         EquationRole::Continuous => Vec::new(),

@@ -57,6 +57,7 @@ fn over(incidence: &IncidenceMatrix, matching: &Matching) -> DecompositionPart {
 fn under(incidence: &IncidenceMatrix, matching: &Matching) -> DecompositionPart {
     let mut row_seen = vec![false; matching.column_of.len()];
     let mut column_seen = vec![false; matching.row_of.len()];
+    // The search goes from columns to rows, so it needs the matrix by columns.
     let (starts, rows) = incidence.transposed(matching.row_of.len());
     let mut stack: Vec<u32> = unmatched(&matching.row_of);
     for &c in &stack {

@@ -32,6 +32,10 @@ pub(super) struct DummyChoice {
 ///
 /// `parameters` has a value for each variable, NaN where it is no known parameter. `preferred` lists states that the
 /// solver asks for.
+///
+/// An example is the pendulum in Cartesian coordinates: `x^2 + y^2 = L^2` is differentiated twice. At the higher level
+/// one of the two accelerations becomes a dummy, at the lower level the velocity in the same coordinate. The position
+/// and the velocity in the other coordinate remain as states.
 pub(super) fn select(
     draft: &mut DaeDraft,
     reduction: &IndexReduction,
@@ -178,6 +182,7 @@ struct StatePreference {
 }
 
 /// The columns of some rows with their preference, least wanted states first.
+/// Columns of equal preference come in ascending order.
 fn candidates(
     draft: &DaeDraft,
     reduction: &IndexReduction,
@@ -214,6 +219,7 @@ fn integral_variable(reduction: &IndexReduction, column: u32) -> VarId {
 ///
 /// The Jacobian is evaluated where the run starts. Entries that vanish there by accident or cannot be evaluated may
 /// lower the rank; then the elimination is repeated at a shifted point.
+/// With `shift` 1 a full rank is likely: only a Jacobian that is singular almost everywhere stays deficient.
 fn eliminate(draft: &DaeDraft, rows: &[&LevelRow], order: &[DummyRank], parameters: &[f64]) -> Vec<u32> {
     // What the solver asks for fits the point that the run has reached, not the start.
     if !order.iter().any(|(wish, _)| wish.asked) {
@@ -284,6 +290,9 @@ const SMALLEST_PIVOT: f64 = 1e-6;
 ///
 /// `order` is worked through class by class of equal preference, least wanted states first; within a class the largest
 /// scaled pivot is taken. `values` is overwritten.
+///
+/// A class with more than 500 columns is taken in order, since the best pivot would cost a search over the class each
+/// time.
 fn pivots(rows: &[&LevelRow], order: &[DummyRank], values: &mut [FxHashMap<u32, f64>]) -> Vec<u32> {
     // Scaling by rows makes pivots of equations in different units comparable.
     let scales: Vec<f64> = values.iter().map(|row| row.values().fold(0.0, |m: f64, v| m.max(v.abs()))).collect();

@@ -13,6 +13,8 @@ use rustc_hash::FxHashMap;
 
 /// Lets equal assignments share their value, in the order of the blocks. `behind` are expressions that are read after
 /// all blocks; they are rewritten too.
+///
+/// An example: `a := rho(p)`, `b := rho(p)`, `c := b + 1` become `a := rho(p)`, `b := a`, `c := a + 1`.
 pub(super) fn share<'e>(exprs: &mut Exprs, blocks: &mut [BltBlock], behind: impl Iterator<Item = &'e mut ExprId>) {
     let mut shared = CommonExpressions { exprs, first: FxHashMap::default(), images: FxHashMap::default() };
     for block in blocks {

@@ -25,6 +25,8 @@ enum ExpressionVariability {
 /// Replaces event-generating nodes everywhere. In asserts, `when` bodies and initial equations a relation makes no
 /// event of its own: it becomes the mode of the same relation elsewhere if there is one, and else is evaluated as it
 /// stands.
+///
+/// Nodes that no expression contains any more are left as they are.
 pub(super) fn extract(draft: &mut DaeDraft) {
     let origins = eventful_origins(draft);
     let mut extraction = CrossingExtraction { map: Vec::with_capacity(origins.len()), ..CrossingExtraction::default() };
@@ -50,6 +52,7 @@ pub(super) fn extract(draft: &mut DaeDraft) {
 
 /// By node: the origin of the first equation or `when` condition that contains it. `None` for nodes that occur nowhere
 /// else: they make no events.
+/// A node that several equations share gets the origin of the first.
 fn eventful_origins(draft: &DaeDraft) -> Vec<Option<ElementOrigin>> {
     let mut origins = vec![None; draft.exprs.len()];
     let mut mark = |roots: &[ExprId], origin: ElementOrigin| {
@@ -88,6 +91,8 @@ struct CrossingExtraction {
 
 impl CrossingExtraction {
     /// The image of one node. `origin` is the place from which it makes events, if any.
+    ///
+    /// An `if` whose branches contain roots gets continuations of its branches: see [`beyond`].
     fn image(&mut self, draft: &mut DaeDraft, e: ExprId, origin: Option<ElementOrigin>) -> ExprId {
         match draft.exprs.node(e) {
             ExprNode::EventRel(rel, a, b) => self.relation(draft, (rel, a, b), origin),
@@ -117,6 +122,8 @@ impl CrossingExtraction {
     }
 
     /// The mode of a relation, or the relation itself where it needs none.
+    /// A relation of time alone becomes a time event, whose moment is known exactly. Relations in places that make no
+    /// events stay relations.
     fn relation(
         &mut self,
         draft: &mut DaeDraft,
@@ -148,6 +155,7 @@ impl CrossingExtraction {
     }
 
     /// The mode of a `floor`, or the `floor` itself where its argument changes at events only.
+    /// The mode has the type Integer.
     fn floor(&self, draft: &mut DaeDraft, a: ExprId, origin: Option<ElementOrigin>) -> ExprId {
         let argument = self.map[a.index()];
         let value = draft.exprs.floor(argument);
@@ -171,6 +179,7 @@ impl CrossingExtraction {
     }
 
     /// When a node may change, from its own kind and that of its arguments.
+    /// An expression is as variable as its most variable argument.
     fn variation(&self, draft: &DaeDraft, e: ExprId) -> ExpressionVariability {
         match draft.exprs.node(e) {
             ExprNode::Time => ExpressionVariability::WithTime,
@@ -200,6 +209,7 @@ fn variable_variation(draft: &DaeDraft, v: VarId) -> ExpressionVariability {
 }
 
 /// Writes `left rel right` as `time rel at`. `None` unless the relation is affine in time with a numeric factor.
+/// Examples: `time > 2` and `2*time + 1 < p`.
 fn time_event(draft: &mut DaeDraft, rel: RelationalOp, left: ExprId, right: ExprId) -> Option<(RelationalOp, ExprId)> {
     let pool = &mut draft.exprs;
     let time = pool.time();
@@ -225,6 +235,7 @@ fn mirrored(rel: RelationalOp) -> RelationalOp {
 
 /// The argument of a square root, or of a power with a positive exponent that is not whole, unless it is a number.
 /// `None` for other nodes.
+/// Only such functions have no value below 0.
 fn root(pool: &Exprs, e: ExprId) -> Option<ExprId> {
     let argument = match pool.node(e) {
         ExprNode::Unary(UnaryFunction::Sqrt, u) => u,
@@ -239,6 +250,7 @@ fn root(pool: &Exprs, e: ExprId) -> Option<ExprId> {
 /// Between the moment at which the condition fails and the event, which the solver finds a little later, the branch is
 /// still evaluated. In `if dp > 0 then sqrt(dp) else 0` the argument becomes negative there. Such a root continues with
 /// the opposite sign, `-sqrt(-dp)`, where the condition does not hold, so that the solver finds the crossing.
+/// The continuation changes no value where the condition holds.
 fn beyond(pool: &mut Exprs, branch: ExprId, holds: ExprId) -> ExprId {
     let mut replaced = Vec::new();
     for e in pool.reachable(&[branch], |_| true) {
@@ -258,6 +270,7 @@ fn beyond(pool: &mut Exprs, branch: ExprId, holds: ExprId) -> ExprId {
 }
 
 /// Makes a mode variable with its equation and its crossing. Returns the mode as an expression.
+/// Its name is the text of the relation, which messages about events show.
 fn watched(draft: &mut DaeDraft, kind: CrossingKind, value: ExprId, ty: ScalarType, origin: ElementOrigin) -> ExprId {
     let origin = ElementOrigin { kind: OriginKind::Relation, ..origin };
     let name = draft.text(value);

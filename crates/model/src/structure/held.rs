@@ -11,6 +11,7 @@ use bramah_syntax::diag::Diagnostic;
 
 /// A note for each position that parameters alone fix. It is a note and no warning, because a locked rotor may be
 /// intended.
+/// A position that belongs to connectors only gives no note.
 pub(super) fn find(draft: &DaeDraft, reduction: &IndexReduction, aliases: &[Alias]) -> Vec<Diagnostic> {
     let held = reduction.constraints_twice_differentiated().filter_map(|(v, row)| {
         let equation = draft.equations[row];

@@ -56,6 +56,7 @@ impl IncidenceMatrix {
 
     /// The solvable entries by columns: `(starts, rows)` with `starts.len() == columns + 1`. The rows of column `c` are
     /// `rows[starts[c]..starts[c + 1]]`, ascending.
+    /// Linear in the number of entries.
     pub fn transposed(&self, columns: usize) -> (Vec<u32>, Vec<u32>) {
         let mut starts = vec![0_u32; columns + 1];
         for row in 0..self.rows() as u32 {
@@ -127,6 +128,8 @@ impl IncidenceScanner {
     }
 
     /// Collects the columns of both sides in `solvable` and `dependent`.
+    ///
+    /// An equation without conditions needs one pass. For others `scan_rest` makes a second one.
     fn scan(&mut self, pool: &Exprs, sides: [ExprId; 2], column: impl Fn(ExprNode) -> Option<u32>) {
         self.solvable.clear();
         self.dependent.clear();
@@ -181,6 +184,7 @@ impl IncidenceScanner {
 
 /// The columns outside of conditions and of other piecewise constant parts, in the order in which they are met. A
 /// column may occur more than once.
+/// Each node is visited once.
 fn smooth_columns(pool: &Exprs, sides: [ExprId; 2], column: &impl Fn(ExprNode) -> Option<u32>) -> Vec<u32> {
     let mut seen = rustc_hash::FxHashSet::default();
     let mut stack = vec![sides[1], sides[0]];

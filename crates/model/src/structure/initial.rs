@@ -158,6 +158,9 @@ impl InitialAssembly {
 
     /// Appends the equations of the model. They keep their partners of the running system where that is possible:
     /// states and free parameters then remain for the initial conditions.
+    ///
+    /// Rows without their former partner are matched at the end, along augmenting paths. A row that finds none
+    /// contradicts the others.
     fn model_rows(&mut self, draft: &DaeDraft, model: &InitializationContext) {
         let running = model.running;
         let mut open = Vec::new();
@@ -170,10 +173,9 @@ impl InitialAssembly {
             let lone = row.discrete.then(|| vec![partner]);
             let made = self.push(draft, self.mapped(row.equation), row.index, lone);
             if self.incidence.solvable(made).contains(&partner) {
-                // At the start an expression may have lost the partner, for instance where `initial()` selects another
-                // branch.
                 self.matching.join(made, partner);
             } else {
+                // At the start the partner may be missing, for instance where `initial()` selects another branch.
                 open.push(made);
             }
         }
@@ -243,6 +245,7 @@ impl InitialAssembly {
 
     /// How a row that found no partner relates to the rows that compete with it. The last search of the augmenter must
     /// have been for this row.
+    /// Repeated equations are recognised by their sides alone, which may be exchanged.
     fn redundancy(&self, row: u32) -> InitialRedundancy {
         let own = self.rows[row as usize].equation;
         // A row without unknowns sees only itself. It may hold as a matter of values, so it is checked.
@@ -267,6 +270,7 @@ impl InitialAssembly {
     }
 
     /// Appends `x = start` for fixed continuous unknowns, states first.
+    /// One that contradicts is checked for differentiated variables that are no states, and reported for others.
     fn fixed_starts(&mut self, draft: &mut DaeDraft, model: &InitializationContext) {
         let is_state = |v: &VarId| model.states.binary_search(v).is_ok();
         let fixed = draft.with_role(SystemRole::Continuous).into_iter().filter(|v| draft.variables[v.index()].fixed);
@@ -303,6 +307,7 @@ impl InitialAssembly {
 
     /// Appends `v = pre(v)` for discrete unknowns whose equation says nothing else at the start. A contradiction is
     /// reported only if the start of the variable is `fixed`.
+    /// Such a row is a definition and can be solved for `v` only.
     fn discrete_defaults(&mut self, draft: &mut DaeDraft) {
         for v in draft.with_role(SystemRole::Discrete) {
             if !self.keeps[v.index()] {
@@ -322,6 +327,9 @@ impl InitialAssembly {
 
     /// Fixes start values until everything is determined: those of states first, best candidates first, then those of
     /// other unknowns. Reports the unknowns that stay undetermined.
+    ///
+    /// Nothing is chosen where the fixed conditions are enough. Each start that finds a partner in the matching is
+    /// recorded in `chosen`.
     fn choose_starts(&mut self, draft: &mut DaeDraft, known: &mut SignAnalysis, model: &InitializationContext) {
         let mut missing = self.matching.row_of.iter().filter(|&&r| r == NONE).count();
         if missing == 0 {
@@ -352,6 +360,7 @@ impl InitialAssembly {
 
     /// Takes back chosen starts, in rows from `first` on, that follow linearly from the other rows although the
     /// structure does not show it. Returns how many.
+    /// Only continuous rows take part, since discrete rows are assignments.
     fn give_up_what_follows(&mut self, draft: &DaeDraft, known: &mut SignAnalysis, first: usize) -> usize {
         let matched: Vec<usize> = (0..self.rows.len())
             .filter(|&row| self.matching.column_of[row] != NONE && !self.rows[row].discrete)
@@ -377,7 +386,7 @@ impl InitialAssembly {
                 continue;
             }
             let row = self.push_start(draft, v);
-            // The search also tells which rows compete with this one.
+            // The search also finds the rows that compete with this one.
             let determined = self.augment(row);
             if !determined
                 && self.augmenter.rows_seen.iter().any(|&seen| seen != row && self.is_fixed_start(draft, seen))
@@ -471,6 +480,7 @@ impl InitialAssembly {
 }
 
 /// By variable: whether it is a discrete unknown that keeps its value at the start. And by expression: its image there.
+/// Delays are replaced by their sources: nothing has been recorded yet.
 fn at_start(draft: &mut DaeDraft, running: &EquationSystem) -> (Vec<bool>, Vec<ExprId>) {
     // First only `initial()` is replaced: whether a variable keeps its value shows in its equation after that.
     let initial = draft.rewritten(|_, node| (node == ExprNode::Initial).then_some(Exprs::ONE));

@@ -53,7 +53,7 @@ pub(super) fn maximum(incidence: &IncidenceMatrix, columns: usize) -> Matching {
 fn greedy(incidence: &IncidenceMatrix, columns: usize) -> Matching {
     let mut matching = Matching::empty(incidence.rows(), columns);
     let mut order: Vec<u32> = (0..incidence.rows() as u32).collect();
-    // Stable, so that rows of equal length stay in order. Longer rows are not told apart.
+    // Stable, so that rows of equal length stay in order. Rows of four or more columns count as equally long.
     order.sort_by_key(|&r| incidence.solvable(r).len().min(4));
     for row in order {
         let free = incidence.solvable(row).iter().find(|&&c| matching.row_of[c as usize] == NONE);
@@ -88,6 +88,7 @@ impl HopcroftKarpPhase {
         self.layer.fill(NONE);
         self.next.fill(0);
         self.queue.clear();
+        // All free rows are sources of one breadth-first search.
         for (row, _) in matching.column_of.iter().enumerate().filter(|&(_, &c)| c == NONE) {
             self.layer[row] = 0;
             self.queue.push(row as u32);
@@ -135,6 +136,7 @@ impl HopcroftKarpPhase {
             if owner == NONE {
                 return self.flip(incidence, matching);
             }
+            // Only along layers: paths of a phase are shortest ones.
             if self.layer[owner as usize] == self.layer[row as usize] + 1 {
                 self.path.push(owner);
             }

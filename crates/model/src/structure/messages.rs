@@ -19,6 +19,8 @@ use bramah_syntax::diag::{Code, Diagnostic, Severity};
 const MOST_ITEMS: usize = 10;
 
 /// Parameters whose bindings use each other (E214). `circle` has at least one member.
+///
+/// Each member gets a place with its binding, so that the reader can follow the circle.
 pub(super) fn cyclic_parameters(draft: &DaeDraft, circle: &[VarId]) -> Diagnostic {
     let names: Vec<String> = circle.iter().map(|&v| name(draft, v)).collect();
     let message = match names.as_slice() {
@@ -36,6 +38,9 @@ pub(super) fn cyclic_parameters(draft: &DaeDraft, circle: &[VarId]) -> Diagnosti
 
 /// Two names of one quantity with different starts. It is an error (E401) if both are fixed or none is. If one is
 /// fixed, the other yields, and it is a warning (W404).
+///
+/// Both places show the value, the parameter that gives it, and whether it is fixed. The help frees the start that is
+/// nearer to the user's model.
 pub(super) fn contradicting_aliases(draft: &DaeDraft, known: &mut SignAnalysis, alias: Alias) -> Diagnostic {
     let mut value = |v: VarId| {
         let start = draft.variables[v.index()].start;
@@ -72,8 +77,12 @@ pub(super) fn contradicting_aliases(draft: &DaeDraft, known: &mut SignAnalysis, 
 }
 
 /// A constraint that would have to be differentiated but cannot be (E304). `v` is the variable without the derivative.
+///
+/// The help for an input is a filter or a second input; for any other variable it is to write the constraint without
+/// the derivative.
 pub(super) fn not_differentiable(draft: &DaeDraft, equation: &FlatEquation, v: VarId) -> Diagnostic {
     let input = draft.role(v) == SystemRole::Input;
+    // The two cases need different advice: an input can be filtered, a constraint must be rewritten.
     let message = if input {
         format!("the derivative of the input {} is needed, but inputs have none", name(draft, v))
     } else {
@@ -96,6 +105,7 @@ pub(super) fn not_differentiable(draft: &DaeDraft, equation: &FlatEquation, v: V
 
 /// A constraint whose unknowns cancel when it is differentiated: another equation says the same, or contradicts it
 /// (E301).
+/// An example is `der(x) - der(x) = u`.
 pub(super) fn cancelling(draft: &DaeDraft, equation: &FlatEquation) -> Diagnostic {
     let message = format!("the equation `{}` determines nothing", sides(draft, equation));
     let made = Diagnostic::new(Code::Singular, message)
@@ -105,6 +115,8 @@ pub(super) fn cancelling(draft: &DaeDraft, equation: &FlatEquation) -> Diagnosti
 }
 
 /// Equations whose unknowns cancel when they are added up, while `left` remains, which would have to be 0 (E303).
+///
+/// The usual cause are two ideal sources that act on one quantity.
 pub(super) fn contradiction(draft: &DaeDraft, equations: &[FlatEquation], left: ExprId) -> Diagnostic {
     let message =
         format!("{} equations contradict each other: together they say `0 = {}`", equations.len(), draft.text(left));
@@ -115,6 +127,9 @@ pub(super) fn contradiction(draft: &DaeDraft, equations: &[FlatEquation], left: 
 
 /// Equations of which one follows from the others. `free` lists unknowns that can therefore change together, each with
 /// its part in a common change.
+///
+/// If the parts are equal and the unknowns are potentials, the note speaks of a common level, as for a circuit without
+/// ground. Otherwise it lists the parts: the unknowns share a load in no unique way.
 pub(super) fn repeated(draft: &DaeDraft, equations: &[FlatEquation], free: &[(VarId, f64)]) -> Diagnostic {
     let message = format!("each of {} equations follows from the others", equations.len());
     let unknowns: Vec<VarId> = free.iter().map(|(v, _)| *v).collect();
@@ -143,6 +158,7 @@ pub(super) fn repeated(draft: &DaeDraft, equations: &[FlatEquation], free: &[(Va
 }
 
 /// `reinit` of a variable that follows from other quantities. `origin` is the place of the `reinit`.
+/// The code is E305.
 pub(super) fn reinit_of_no_state(draft: &DaeDraft, v: VarId, origin: ElementOrigin) -> Diagnostic {
     let message = format!("{} cannot be set by `reinit`, because it follows from other quantities", name(draft, v));
     let instance = &draft.instances[origin.instance as usize];
@@ -155,6 +171,7 @@ pub(super) fn reinit_of_no_state(draft: &DaeDraft, v: VarId, origin: ElementOrig
 
 /// A position that a constraint of parameters alone fixes, though the circuit computes an acceleration for it. `bodies`
 /// are the names of the position.
+/// The code is N306, a note.
 pub(super) fn held_still(draft: &DaeDraft, bodies: &[VarId], equation: &FlatEquation) -> Diagnostic {
     let names: Vec<String> = bodies.iter().map(|&v| name(draft, v)).collect();
     let mut made = Diagnostic::new(Code::HeldStill, format!("{} cannot change", listed(&names)));
@@ -168,6 +185,7 @@ pub(super) fn held_still(draft: &DaeDraft, bodies: &[VarId], equation: &FlatEqua
 }
 
 /// Constraints that no choice of states satisfies. `unknowns` are those that no equation is left for.
+/// The code is E303.
 pub(super) fn dependent_constraints(draft: &DaeDraft, equations: &[FlatEquation], unknowns: &[Unknown]) -> Diagnostic {
     let made = Diagnostic::new(Code::Overdetermined, "constraints and their derivatives depend on each other");
     let made = with_equations(draft, made, equations);
@@ -177,6 +195,8 @@ pub(super) fn dependent_constraints(draft: &DaeDraft, equations: &[FlatEquation]
 
 /// Initial equations and fixed starts that say too much (E401). `extra` is the condition that found no unknown, `group`
 /// all equations that compete with it.
+///
+/// The note counts how many conditions there are and how many can hold: one less than there are.
 pub(super) fn initially_contradicting(draft: &DaeDraft, extra: &FlatEquation, group: &[FlatEquation]) -> Diagnostic {
     // The equations of the model are no choice of the user here, so only conditions are counted and listed.
     let conditions: Vec<FlatEquation> = group.iter().filter(|e| is_condition(draft, e)).copied().collect();
@@ -188,6 +208,7 @@ pub(super) fn initially_contradicting(draft: &DaeDraft, extra: &FlatEquation, gr
     let made = Diagnostic::new(Code::InitialOver, message);
     let others: Vec<FlatEquation> = conditions.iter().filter(|e| *e != extra).copied().collect();
     let made = with_equations(draft, made.at(extra.origin.span, "this one is too much"), &others);
+    // One condition less than there are would have found unknowns.
     let (have, want) = (counted(conditions.len(), "condition"), conditions.len().max(1) - 1);
     let note = match want {
         0 => format!("there is {have} where none can hold"),
@@ -203,6 +224,7 @@ fn is_condition(draft: &DaeDraft, equation: &FlatEquation) -> bool {
 }
 
 /// Unknowns that no equation and no start value determines at the start.
+/// The code is E403.
 pub(super) fn initially_undetermined(draft: &DaeDraft, open: &[Unknown]) -> Diagnostic {
     let names: Vec<String> = open.iter().map(|&u| unknown_name(draft, u)).collect();
     let made = Diagnostic::new(Code::InitialFailed, format!("nothing determines {} at the start", listed(&names)));
@@ -210,6 +232,8 @@ pub(super) fn initially_undetermined(draft: &DaeDraft, open: &[Unknown]) -> Diag
 }
 
 /// A note about start values that the compiler fixed to make the start determined.
+///
+/// The code is W402, but the severity is lowered to a note.
 pub(super) fn chosen_starts(draft: &DaeDraft, chosen: &[VarId]) -> Diagnostic {
     let names: Vec<String> = chosen.iter().map(|&v| name(draft, v)).collect();
     let text = format!("start values used although not `fixed`: {}", listed(&names));
@@ -224,6 +248,9 @@ pub(super) fn chosen_starts(draft: &DaeDraft, chosen: &[VarId]) -> Diagnostic {
 
 /// A group of nodes that exchanges nothing with a reference, so that only differences of potentials matter. `flows` are
 /// the flows of its sums, ascending.
+///
+/// The code is E302 where the flows belong to connectors: the message then lists the components and the potentials of
+/// their ports. For sums written by hand it is E301.
 pub(super) fn closed_group(draft: &DaeDraft, aliases: &[Alias], flows: &[VarId]) -> Diagnostic {
     let mut names: Vec<VarId> = flows.to_vec();
     // Ports may carry the eliminated names of the flows.
@@ -251,6 +278,7 @@ pub(super) fn closed_group(draft: &DaeDraft, aliases: &[Alias], flows: &[VarId])
     let (level, advice) = kind_of_level(draft, &levels);
     let message = format!("nothing fixes the {level} of {{{}}}", listed(&components));
     let mut made = Diagnostic::new(Code::NoReference, message);
+    // One place for each component, even if it has several ports in the group.
     let mut reported: Vec<u32> = Vec::new();
     for v in &levels {
         let owner = draft.instances[variable(v).origin.instance as usize].parent;
@@ -268,6 +296,8 @@ pub(super) fn closed_group(draft: &DaeDraft, aliases: &[Alias], flows: &[VarId])
 
 /// A structurally singular system (E301, E302, E303). `aliases` are those eliminated from this system already; an empty
 /// list means that it is as the user wrote it.
+///
+/// The headline names a pattern that an engineer knows; the notes list both parts of the decomposition.
 pub(super) fn singular(draft: &DaeDraft, aliases: &[Alias], found: &StructuralSingularity) -> Diagnostic {
     let report = SingularityReport { draft, aliases, found };
     let made = report.headline();
@@ -309,6 +339,9 @@ impl SingularityReport<'_> {
     ///
     /// Patterns are tried from the most to the least specific: an equation of known quantities only, a group without a
     /// reference, a potential that is determined twice.
+    ///
+    /// An equation without unknowns that still contains parameters or inputs is the most specific fault. Potentials
+    /// alone in the underdetermined part mean a missing reference.
     fn headline(&self) -> Diagnostic {
         let unknowns = self.variables(self.under());
         let empty: Vec<FlatEquation> =
@@ -335,7 +368,9 @@ impl SingularityReport<'_> {
     }
 
     /// The message where no pattern fits: unknowns that no equation mentions, or the counts of equations and unknowns.
+    /// The code is E301 for too few equations and E303 for too many.
     fn general(&self, unknowns: &[VarId]) -> Diagnostic {
+        // An unknown that no equation mentions is the simplest cause, so it is reported first.
         let unused: Vec<VarId> = unknowns.iter().copied().filter(|&v| self.is_unused(v)).collect();
         if !unused.is_empty() {
             let names: Vec<String> = unused.iter().map(|&v| name(self.draft, v)).collect();
@@ -357,6 +392,7 @@ impl SingularityReport<'_> {
     }
 
     /// The message about an equation of parameters, inputs and numbers only.
+    /// The code is E303.
     fn without_unknowns(&self, equation: &FlatEquation) -> Diagnostic {
         let used = self.draft.exprs.dependencies(&[equation.lhs, equation.rhs]).vars;
         let names: Vec<String> = used.iter().map(|&v| name(self.draft, v)).collect();
@@ -372,6 +408,7 @@ impl SingularityReport<'_> {
     }
 
     /// The message where only levels (potentials) of connected nodes are undetermined.
+    /// The code is E302, and the help depends on the domain: see [`kind_of_level`].
     fn no_reference(&self, unknowns: &[VarId]) -> Diagnostic {
         let (level, advice) = kind_of_level(self.draft, unknowns);
         let components = self.components_of(unknowns);
@@ -381,6 +418,9 @@ impl SingularityReport<'_> {
     }
 
     /// The message where more equations than needed determine a few quantities.
+    ///
+    /// If two components are involved, the help says that two ideal sources cannot act on one quantity. If one is
+    /// involved and some unknowns are left over, it suggests that one of the equations was meant for them.
     fn determined_twice(&self, twice: &[VarId]) -> Diagnostic {
         let equations = self.equations(self.over());
         let mut owners: Vec<String> = equations.iter().map(|e| self.owner(e)).filter(|o| !o.is_empty()).collect();
@@ -420,6 +460,7 @@ impl SingularityReport<'_> {
     }
 
     /// Adds the unknowns of a part, one line for each component.
+    /// A component is the first part of a name. At most [`MOST_ITEMS`] components are listed.
     fn part_note(&self, made: Diagnostic, title: &str, part: &DecompositionPart) -> Diagnostic {
         if part.columns.is_empty() {
             return made;
@@ -446,6 +487,7 @@ impl SingularityReport<'_> {
     }
 
     /// Adds the places where the unknowns are declared, and the instance of the first one.
+    /// At most [`MOST_ITEMS`] places are shown.
     fn labelled(&self, mut made: Diagnostic, unknowns: &[VarId]) -> Diagnostic {
         for &v in unknowns.iter().take(MOST_ITEMS) {
             let variable = &self.draft.variables[v.index()];
@@ -473,6 +515,7 @@ impl SingularityReport<'_> {
     }
 
     /// Whether no equation can be solved for a variable or its derivatives.
+    /// Linear in the number of equations, which is enough for a message.
     fn is_unused(&self, v: VarId) -> bool {
         let overview = &self.found.overview;
         let column = overview.columns.iter().position(|&c| c == v).map(|c| c as u32);
@@ -488,6 +531,7 @@ impl SingularityReport<'_> {
     }
 
     /// Whether a variable is the potential of a connector, or equal to one.
+    /// Every variable of a connector that is no flow counts.
     fn is_potential(&self, v: VarId) -> bool {
         self.names_of(v).any(|v| {
             let variable = &self.draft.variables[v.index()];
@@ -511,6 +555,8 @@ impl SingularityReport<'_> {
 }
 
 /// What potentials with this unit are called, and advice on what fixes them. The first unit among the unknowns decides.
+///
+/// The unit decides about the domain: Pa is hydraulic, V electric, K thermal, rad rotational, m translational.
 fn kind_of_level(draft: &DaeDraft, unknowns: &[VarId]) -> (&'static str, &'static str) {
     let unit = unknowns.iter().find_map(|v| draft.variables[v.index()].unit.as_deref());
     match unit {
@@ -524,6 +570,7 @@ fn kind_of_level(draft: &DaeDraft, unknowns: &[VarId]) -> (&'static str, &'stati
 }
 
 /// Adds the places of equations, each with its text and why it exists.
+/// At most [`MOST_ITEMS`] equations are shown; a note counts the others.
 fn with_equations(draft: &DaeDraft, mut made: Diagnostic, equations: &[FlatEquation]) -> Diagnostic {
     for equation in equations.iter().take(MOST_ITEMS) {
         made = made.at(equation.origin.span, format!("`{}`{}", sides(draft, equation), reason(equation.origin.kind)));

@@ -69,18 +69,24 @@ pub struct Dae {
     /// The experiment annotation.
     pub experiment: flat::ExperimentAnnotation,
     /// All equations that blocks refer to, for messages.
+    /// They include differentiated equations, definitions of modes, and initial conditions.
     pub equations: Vec<flat::FlatEquation>,
     /// Parameters and constants with a binding, sorted so that each binding refers to earlier ones only.
+    /// Those that depend on free parameters are not among them.
     pub parameters: Vec<VarId>,
     /// Parameters with `fixed = false`: unknowns of the initial system, then constant.
     pub free_parameters: Vec<VarId>,
     /// Top-level inputs, in declaration order.
+    /// The stand-ins of `delays` are not among them.
     pub inputs: Vec<VarId>,
     /// Variables that equal another one, or its negative; the target is never an alias itself.
     pub aliases: Vec<Alias>,
     /// The states, in declaration order: their values are integrated.
+    /// The derivative of each is an unknown `Der` of the continuous system, or assigned there from the variable that it
+    /// is.
     pub states: Vec<VarId>,
     /// Variables whose derivatives the equations need but that are no states: they must be continuous.
+    /// They are the variables whose derivatives became dummies. A jump of one at an event would be an impulse.
     pub differentiated: Vec<VarId>,
     /// Discrete unknowns (user's, modes and conditions), each assigned in exactly one `event` block.
     pub discrete: Vec<VarId>,
@@ -143,6 +149,7 @@ pub enum Unknown {
 }
 
 /// A step of a sorted system. Each block reads only known quantities and unknowns of earlier blocks.
+/// The blocks of a system come in an order in which they can be solved.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BltBlock {
     /// One explicit assignment.
@@ -180,6 +187,7 @@ pub struct AlgebraicLoop {
 }
 
 /// A loop through discrete equations: iterate `continuous`, then `discrete`, until the discrete values stay.
+/// Its members depend on each other, so no order of the two parts is enough.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MixedLoop {
     /// The continuous part with discrete values frozen, sorted: `ExplicitAssignment` and `AlgebraicLoop` only.
@@ -237,6 +245,7 @@ pub struct DelayInput {
 }
 
 /// Something that happens once when a `when` fires. `fires` is an expression over discrete values and `pre`.
+/// The conditions of earlier branches of the same clause are excluded in `fires`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EventAction {
     /// True at the event iteration in which it happens.

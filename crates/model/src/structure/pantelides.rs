@@ -57,6 +57,8 @@ pub(super) struct IndexReduction {
 
 impl IndexReduction {
     /// The columns and rows of the continuous equations, undifferentiated. The derivatives that occur get columns too.
+    ///
+    /// Rows are numbered in the order of the draft's equations; discrete equations have no row.
     pub fn new(draft: &mut DaeDraft) -> Self {
         let mut made = IndexReduction {
             of_var: vec![NONE; draft.variables.len()],
@@ -228,6 +230,7 @@ impl IndexReduction {
 
     /// A maximum matching of rows with derivatives of highest order, made at once. `reduce` extends it row by row; it
     /// saves most searches for single rows.
+    /// It is a matching of rows and columns of the reduction.
     pub fn first_matching(&self) -> Matching {
         let mut highest = IncidenceMatrix::default();
         let mut columns = Vec::new();
@@ -241,6 +244,9 @@ impl IndexReduction {
 
     /// Appends the derivatives of these columns and rows. The derivative of a matched row is matched with the
     /// derivative of its column, so that the matching stays valid.
+    ///
+    /// Columns come first: the derivatives of the rows contain the derivatives of the columns. `Err` where a derivative
+    /// does not exist or the system is no longer regular.
     fn differentiate_all(
         &mut self,
         draft: &mut DaeDraft,
@@ -276,6 +282,7 @@ impl IndexReduction {
 
     /// Fails if the rows of highest order cannot be matched with one chain each: a variable and its derivatives count
     /// as one.
+    /// The matching is made anew, because the cancelled unknowns may have been partners.
     fn check_regular(&self, draft: &DaeDraft) -> Result<(), Diagnostic> {
         let rows: Vec<u32> =
             (0..self.equations.len() as u32).filter(|&r| self.derivative[r as usize] == NONE).collect();
@@ -347,6 +354,8 @@ impl IndexReduction {
 
     /// The variable of a column. A derivative that is none becomes a hidden variable `der(x)`, linked in
     /// `DaeDraft::derivative`.
+    ///
+    /// In the draft, `Der(x)` keeps its meaning; the link says that it equals the new variable.
     pub fn materialize(&mut self, draft: &mut DaeDraft, column: u32) -> VarId {
         let x = match self.columns[column as usize].unknown {
             Unknown::Var(v) => return v,

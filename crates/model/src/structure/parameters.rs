@@ -1,8 +1,8 @@
 //! Parameters: the order in which bindings are evaluated, their values, and the signs of expressions that follow.
 //!
-//! [`order`] sorts the bindings, [`values`] evaluates them, [`check`] reports values out of range. [`SignAnalysis`]
-//! then answers two questions for the other steps: the value of an expression of parameters, and whether an expression
-//! can vanish. `analysis` calls them in this order.
+//! `order` sorts the bindings, `values` evaluates them, `check` reports values out of range. `SignAnalysis` then
+//! answers two questions for the other steps: the value of an expression of parameters, and whether an expression can
+//! vanish. `analysis` calls them in this order. Later crates use `out_of_range` for values that are set before a run.
 
 use super::draft::{DaeDraft, SystemRole};
 use super::{EventActionKind, blt, messages};
@@ -16,6 +16,9 @@ use bramah_syntax::diag::{Code, Diagnostic};
 /// Parameters that depend on free parameters become free themselves; their bindings become initial equations. Where
 /// bindings use each other, conditions that are known already are decided first. `Err` is a circle of bindings that no
 /// condition opens.
+///
+/// The sort is topological: strongly connected components of the graph of bindings, dependencies first. Each round of
+/// the loop removes at least one `if`, so it ends.
 pub(super) fn order(draft: &mut DaeDraft) -> Result<Vec<VarId>, Diagnostic> {
     loop {
         match sorted_parameters(draft) {
@@ -41,6 +44,8 @@ struct BindingCycle {
 ///
 /// `T = if useT then T0 else f(h)` and `h = if useT then g(T) else h0` use each other only on paper. Parameters in a
 /// decided condition are fixed with the structure. False where no binding has such a condition.
+///
+/// In each binding one `if` is replaced per call; the caller sorts again and calls this function if a circle remains.
 fn decide_conditions(draft: &mut DaeDraft, before: &[VarId], members: &[VarId]) -> bool {
     let values = values(draft, before);
     let mut decided = false;
@@ -76,6 +81,7 @@ fn decide_conditions(draft: &mut DaeDraft, before: &[VarId], members: &[VarId]) 
 }
 
 /// The bound parameters in order of evaluation, with what their bindings use. `Err` is the first circle.
+/// A binding that uses its own parameter is a circle of one.
 fn sorted_parameters(draft: &DaeDraft) -> Result<(BindingUses, Vec<VarId>), BindingCycle> {
     let bound = draft.with_role(SystemRole::Parameter);
     let mut position = vec![u32::MAX; draft.variables.len()];
@@ -100,6 +106,7 @@ fn sorted_parameters(draft: &DaeDraft) -> Result<(BindingUses, Vec<VarId>), Bind
 
 /// Removes from the order the parameters that depend on free ones and makes them free, with their bindings as initial
 /// equations.
+/// A binding over free parameters has no value before the start.
 fn without_free(draft: &mut DaeDraft, uses: &BindingUses, order: Vec<VarId>) -> Vec<VarId> {
     let mut kept = Vec::with_capacity(order.len());
     for v in order {
@@ -154,6 +161,7 @@ impl BindingUses {
 
 /// Fixes parameters with the structure, and everything that they are computed from: they become constants, so that a
 /// run cannot change them.
+/// The structure is valid only with these values.
 pub(super) fn fix(draft: &mut DaeDraft, parameters: &[VarId]) {
     let mut open = parameters.to_vec();
     while let Some(v) = open.pop() {
@@ -168,6 +176,7 @@ pub(super) fn fix(draft: &mut DaeDraft, parameters: &[VarId]) {
 
 /// By variable: the value of a parameter as it stands in the model, NaN for other variables. A parameter without
 /// binding and start has the default of its type; the flattening has reported that. `order` is that of [`order`].
+/// Each binding is evaluated once.
 pub(super) fn values(draft: &DaeDraft, order: &[VarId]) -> Vec<f64> {
     let mut values = vec![f64::NAN; draft.variables.len()];
     let mut evaluation = bramah_expr::eval::EvaluationCache::default();
@@ -206,6 +215,7 @@ pub(super) fn check(draft: &DaeDraft, order: &[VarId], values: &[f64]) -> Vec<Di
 
 /// The message about a value below `low` or above `high`, without its place. `None` where the value is in range or the
 /// bounds are not known.
+/// It prints the value with the unit of the variable, as in "`V` is -1 m3, less than its `min`, 0 m3".
 pub fn out_of_range(variable: &FlatVariable, value: f64, low: Option<f64>, high: Option<f64>) -> Option<Diagnostic> {
     let bound = match (low, high) {
         (Some(low), _) if value < low => format!("less than its `min`, {low}"),
@@ -217,6 +227,7 @@ pub fn out_of_range(variable: &FlatVariable, value: f64, low: Option<f64>, high:
 }
 
 /// The diagnostic about one parameter, if its value is wrong.
+/// The bounds may depend on other parameters; a bound that is not known is not checked.
 fn check_one(draft: &DaeDraft, v: VarId, values: &[f64]) -> Option<Diagnostic> {
     let variable = &draft.variables[v.index()];
     let value = values[v.index()];
@@ -294,6 +305,7 @@ enum ValueSign {
 
 /// Signs and parameter values of all nodes of a pool. The pool may grow: new nodes are evaluated when they are asked
 /// for.
+/// Both hold with the parameters as they are in the model.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SignAnalysis {
     /// By variable: the value of a parameter, else NaN.
@@ -327,12 +339,14 @@ impl SignAnalysis {
 
     /// True when an expression cannot vanish, whatever variables and time are, with the parameters as they are. False
     /// means that it may vanish.
+    /// Pivots are chosen by this answer, so it must never be true by accident.
     pub fn is_nonzero(&mut self, pool: &Exprs, e: ExprId) -> bool {
         self.extend(pool);
         matches!(self.signs[e.index()], ValueSign::Positive | ValueSign::Negative | ValueSign::NotZero)
     }
 
     /// Evaluates the nodes that were added to the pool since the last call.
+    /// Ids ascend from arguments to nodes, so one pass suffices.
     fn extend(&mut self, pool: &Exprs) {
         for i in self.values.len()..pool.len() {
             let e = ExprId(i as u32);
@@ -344,6 +358,7 @@ impl SignAnalysis {
     }
 
     /// The value of a node from those of its arguments; NaN where it is not known.
+    /// `sample` has no value before the run.
     fn node_value(&self, pool: &Exprs, e: ExprId) -> f64 {
         let node = pool.node(e);
         let operands = pool.operands(e);
@@ -426,6 +441,7 @@ impl SignAnalysis {
     }
 
     /// The sign of a logarithm of the form `log(1 + x)` with `x` not negative, as in a softplus function.
+    /// One of the two terms must be a known number of at least 1.
     fn logarithm(&self, pool: &Exprs, e: ExprId) -> ValueSign {
         let ExprNode::Binary(bramah_expr::BinaryFunction::Add, a, b) = pool.node(e) else { return ValueSign::Unknown };
         let beyond = |one: ExprId, rest: ExprId| match self.signs[rest.index()] {
@@ -436,6 +452,7 @@ impl SignAnalysis {
     }
 
     /// The sign of a power. A known even exponent makes any base but 0 positive.
+    /// Without a known exponent only a positive base is certain to give a positive power.
     fn power(&self, base: ValueSign, exponent: ExprId) -> ValueSign {
         let even = self.values[exponent.index()] % 2.0 == 0.0;
         match base {
@@ -456,6 +473,7 @@ const DEPTH: usize = 4;
 
 /// By variable: the sign of variables that stay constant, and of variables that an equation sets equal to an expression
 /// of known sign.
+/// A variable with several definitions gets the first sign that is found.
 fn variable_signs(draft: &DaeDraft, values: &[f64]) -> Vec<ValueSign> {
     let mut known = SignAnalysis { variables: values.to_vec(), ..SignAnalysis::default() };
     let mut signs = vec![ValueSign::Unknown; draft.variables.len()];
@@ -523,6 +541,7 @@ fn not_positive(s: ValueSign) -> bool {
 }
 
 /// The sign of the negative.
+/// `NotZero` and `Unknown` stay what they are.
 fn opposite(s: ValueSign) -> ValueSign {
     match s {
         ValueSign::Positive => ValueSign::Negative,
@@ -534,6 +553,7 @@ fn opposite(s: ValueSign) -> ValueSign {
 }
 
 /// The sign of a sum.
+/// Two terms of the same sign keep it; the sum excludes 0 if one of them does.
 fn sum(a: ValueSign, b: ValueSign) -> ValueSign {
     let strict = nonzero(a) || nonzero(b);
     if not_negative(a) && not_negative(b) {
@@ -546,6 +566,7 @@ fn sum(a: ValueSign, b: ValueSign) -> ValueSign {
 }
 
 /// The sign of a product or quotient.
+/// The product excludes 0 if both factors do.
 fn product(a: ValueSign, b: ValueSign) -> ValueSign {
     let same = not_negative(a) && not_negative(b) || not_positive(a) && not_positive(b);
     let other = not_negative(a) && not_positive(b) || not_positive(a) && not_negative(b);
@@ -560,6 +581,7 @@ fn product(a: ValueSign, b: ValueSign) -> ValueSign {
 }
 
 /// The sign of an expression that has one of two values.
+/// This serves `if`, `min`, `max` and `homotopy`.
 fn either(a: ValueSign, b: ValueSign) -> ValueSign {
     if a == b {
         a

@@ -26,6 +26,7 @@ impl Dae {
     }
 
     /// One of the sorted systems: a line for each assignment, with the parts of loops indented.
+    /// A loop begins with a line such as `linear loop for a, b`; a mixed loop with `mixed`.
     pub fn blocks_text(&self, blocks: &[BltBlock]) -> String {
         let mut out = String::new();
         self.write_blocks(blocks, 0, &mut out);
@@ -33,6 +34,7 @@ impl Dae {
     }
 
     /// States, aliases and the continuous system: the block lower triangular form.
+    /// `check --emit` prints it.
     pub fn blt_text(&self) -> String {
         let mut out = String::new();
         let names: Vec<&str> = self.states.iter().map(|&v| self.name(v)).collect();
@@ -81,6 +83,7 @@ impl Dae {
     /// Appends a loop: its tearing variables, then its assignments, then its residuals.
     fn write_loop(&self, found: &AlgebraicLoop, depth: usize, out: &mut String) {
         let names: Vec<String> = found.tearing.iter().map(|&u| self.unknown_name(u)).collect();
+        // Linear means that the residuals are affine in the tearing variables.
         let kind = if found.linear { "linear" } else { "nonlinear" };
         line(out, depth, &format!("{kind} loop for {}", names.join(", ")));
         for assign in &found.inner {

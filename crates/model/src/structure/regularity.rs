@@ -24,6 +24,7 @@ pub(super) struct SystemOverview {
 }
 
 /// A system that is not regular, with its decomposition.
+/// It is boxed in results, since it is large and rare.
 pub(super) struct StructuralSingularity {
     /// The system.
     pub overview: SystemOverview,
@@ -32,6 +33,7 @@ pub(super) struct StructuralSingularity {
 }
 
 /// Checks the system of all continuous and discrete equations. `Ok` if it has a perfect matching.
+/// It costs one maximum matching.
 pub(super) fn check(draft: &DaeDraft) -> Result<(), Box<StructuralSingularity>> {
     let overview = SystemOverview::new(draft);
     let complete = |partners: &[u32]| partners.iter().all(|&p| p != NONE);
@@ -82,6 +84,7 @@ impl SystemOverview {
     }
 
     /// Makes the rows of the incidence matrix.
+    /// Rows come in the order of the draft's equations.
     fn scan(&mut self, draft: &DaeDraft) {
         let mut scanner = IncidenceScanner::default();
         let of_var = &self.of_var;

@@ -55,6 +55,10 @@ impl<'a> BlockSolver<'a> {
 
     /// The block of one equation for one unknown: an assignment, or a loop with that unknown as its only tearing
     /// variable.
+    /// It is an assignment only if the coefficient of the unknown cannot vanish, so that no division by 0 can happen in
+    /// a run.
+    /// It is an assignment only if the coefficient of the unknown cannot vanish, so that no division by 0 can happen in
+    /// a run.
     pub fn single(&mut self, equation: &FlatEquation, index: u32, unknown: Unknown) -> BltBlock {
         match self.solve(equation, unknown) {
             EquationSolvability::Explicit { value, .. } => {
@@ -91,6 +95,7 @@ impl<'a> BlockSolver<'a> {
         // Tearing numbers columns within the loop.
         let local: FxHashMap<u32, u32> = columns.iter().enumerate().map(|(i, &c)| (c, i as u32)).collect();
         let unknown = |c: u32| unknowns[columns[c as usize] as usize];
+        // Decided for the whole loop, since it allows more entries to be solved.
         let linear = self.is_linear(members, columns, unknowns);
         let mut graph = LoopGraph::default();
         for member in members {
@@ -106,6 +111,7 @@ impl<'a> BlockSolver<'a> {
             }
             graph.rows.push(row);
         }
+        // It decides only between columns of equal structural score.
         graph.liking = (0..columns.len() as u32).map(|c| self.liking(unknown(c))).collect();
         let torn = tearing::tear(&graph);
         let inner = torn.inner.iter().map(|&(row, c)| {
@@ -153,6 +159,7 @@ impl<'a> BlockSolver<'a> {
     }
 
     /// How an equation can be solved for an unknown.
+    /// The outcome is kept for the next system that contains the equation.
     fn solve(&mut self, equation: &FlatEquation, unknown: Unknown) -> EquationSolvability {
         let key = (equation.lhs, equation.rhs, unknown);
         if let Some(&known) = self.found.get(&key) {
@@ -163,6 +170,7 @@ impl<'a> BlockSolver<'a> {
         let solved = match pool.solve_for(equation.lhs, equation.rhs, leaf) {
             None => EquationSolvability::No,
             Some((value, coefficient)) if self.known.is_nonzero(pool, coefficient) => {
+                // A division by such a coefficient amplifies no error.
                 let gentle = pool.as_num(coefficient).is_some_and(|c| c.abs() == 1.0);
                 let switched =
                     pool.reachable(&[coefficient], |_| true).iter().any(|&e| matches!(pool.node(e), ExprNode::If(..)));
@@ -175,6 +183,7 @@ impl<'a> BlockSolver<'a> {
     }
 
     /// Whether all members are affine in all unknowns of the loop together.
+    /// The solver then needs one Newton step for the loop.
     fn is_linear(&self, members: &[BlockEquation], columns: &[u32], unknowns: &[Unknown]) -> bool {
         let set: rustc_hash::FxHashSet<Unknown> = columns.iter().map(|&c| unknowns[c as usize]).collect();
         let pool = &self.draft.exprs;

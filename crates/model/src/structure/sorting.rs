@@ -81,6 +81,7 @@ pub(super) struct SystemRow {
 impl EquationSystem {
     /// The blocks of the continuous rows, with discrete unknowns as known quantities. Returns the strongly connected
     /// components as lists of rows, and the block of each.
+    /// Components are in the order in which they can be solved.
     pub fn continuous_blocks(&self, solver: &mut BlockSolver) -> (StrongComponents, Vec<BltBlock>) {
         // Discrete rows are nodes without edges here; they become components of their own, which are dropped.
         let found = blt::components(self.rows.len(), |row, out| {
@@ -98,6 +99,7 @@ impl EquationSystem {
 
     /// The block of a component, given its rows. `number` is the number of the component; in `marks` the columns of the
     /// component carry it.
+    /// A component of one row needs no tearing.
     fn block(&self, solver: &mut BlockSolver, rows: &[u32], number: u32, marks: &mut [u32]) -> BltBlock {
         let column = |row: u32| self.matching.column_of[row as usize];
         if let [row] = rows {
@@ -126,6 +128,8 @@ impl EquationSystem {
 
     /// The continuous blocks with the discrete equations in between. A loop through discrete equations becomes a
     /// [`MixedLoop`].
+    ///
+    /// `components` and `blocks` are the result of [`Self::continuous_blocks`]; the blocks are not made again.
     pub fn with_discrete(
         &self,
         solver: &mut BlockSolver,

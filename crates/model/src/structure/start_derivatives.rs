@@ -17,6 +17,9 @@ use rustc_hash::FxHashMap;
 
 /// The running system with the derivatives that initial equations ask for. `None` where they ask for none. The initial
 /// equations are rewritten in terms of the new variables.
+///
+/// For `der(y) = 0` with `y = f(x, z)` it adds `der(y) = df/dx*der(x) + df/dz*der(z)`, where `der(x)` of a state is
+/// known already and `der(z)` needs an equation of its own.
 pub(super) fn add(
     draft: &mut DaeDraft,
     running: &EquationSystem,
@@ -48,6 +51,7 @@ pub(super) fn add(
 }
 
 /// Continuous unknowns that are no states and whose derivatives occur in initial equations.
+/// The derivatives of states are unknowns of the running system already.
 fn asked_for(draft: &DaeDraft, states: &[VarId]) -> Vec<VarId> {
     let sides = draft.initial_equations.iter().flat_map(|e| [e.lhs, e.rhs]).collect::<Vec<_>>();
     let asked = draft.exprs.dependencies(&sides).ders;
@@ -55,6 +59,7 @@ fn asked_for(draft: &DaeDraft, states: &[VarId]) -> Vec<VarId> {
 }
 
 /// The derivatives made so far.
+/// Every unknown gets at most one variable for its derivative.
 struct StartDerivatives<'a> {
     /// The system that determines the unknowns.
     running: &'a EquationSystem,
@@ -85,6 +90,7 @@ impl<'a> StartDerivatives<'a> {
 
     /// Makes a variable for the derivative of an unknown, if the unknown belongs to the running system and has none
     /// yet.
+    /// The name of the variable is `der(v)`, or `der(der(v))` for the derivative of a state.
     fn of(&mut self, draft: &mut DaeDraft, unknown: Unknown) {
         if self.columns.of(unknown).is_none() || self.made.contains_key(&unknown) {
             return;
@@ -125,6 +131,7 @@ impl<'a> StartDerivatives<'a> {
     }
 
     /// The time derivative of an expression in terms of the new variables.
+    /// Leaves without a variable are states, constants or discrete quantities.
     fn differentiated(&mut self, draft: &mut DaeDraft, e: ExprId) -> ExprId {
         let (made, columns, links) = (&self.made, &self.columns, &draft.derivative);
         let mut leaf = |pool: &mut Exprs, leaf: DerivativeLeaf| {
@@ -145,6 +152,7 @@ impl<'a> StartDerivatives<'a> {
     }
 
     /// A copy of the running system with the new rows and columns, matched with each other.
+    /// The rows come in the order in which they were made.
     fn extended(self, draft: &DaeDraft) -> EquationSystem {
         let mut system = self.running.clone();
         system.columns.extend(self.rows.iter().map(|(_, v)| Unknown::Var(*v)));

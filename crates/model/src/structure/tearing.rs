@@ -38,6 +38,7 @@ pub(super) struct TearingResult {
 /// Tears a loop.
 pub(super) fn tear(graph: &LoopGraph) -> TearingResult {
     let mut state = TearingState::new(graph);
+    // Before the first guess: rows of one column need none.
     state.causalize();
     while state.open_columns > 0 {
         let column = state.best_guess();
@@ -108,6 +109,7 @@ impl<'a> TearingState<'a> {
     }
 
     /// Solves rows with one open column until none is left that allows it.
+    /// Each row is used once at most.
     fn causalize(&mut self) {
         while let Some(row) = self.ready.pop() {
             let columns = &self.graph.rows[row as usize];

@@ -16,6 +16,7 @@ use bramah_expr::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction, VarId}
 use rustc_hash::{FxHashMap, FxHashSet};
 
 /// Replaces by 0 all products that a factor made 0 by these parameters removes, and fixes the parameters.
+/// Nothing happens for an empty list.
 pub(super) fn take_out(draft: &mut DaeDraft, known: &mut SignAnalysis, decisive: &[VarId]) {
     if decisive.is_empty() {
         return;
@@ -30,6 +31,9 @@ pub(super) fn take_out(draft: &mut DaeDraft, known: &mut SignAnalysis, decisive:
 }
 
 /// The parameters with value 0 without whose products one of the systems cannot be matched. Ascending.
+///
+/// `systems` are the running and the initial system. All products with a factor 0 are removed from both at once; where
+/// a perfect matching remains, no parameter decides.
 pub(super) fn decisive(draft: &mut DaeDraft, known: &mut SignAnalysis, systems: [&EquationSystem; 2]) -> Vec<VarId> {
     let zeros = ZeroAnalysis::find(draft, known);
     if zeros.products.is_empty() {
@@ -57,12 +61,15 @@ pub(super) fn decisive(draft: &mut DaeDraft, known: &mut SignAnalysis, systems: 
 }
 
 /// By expression: its image with 0 in the place of these products.
+/// Products are compared as nodes of the pool.
 fn without_products(draft: &mut DaeDraft, products: &[ExprId]) -> Vec<ExprId> {
     let taken: FxHashSet<ExprNode> = products.iter().map(|e| draft.exprs.node(*e)).collect();
     draft.rewritten(|_, node| taken.contains(&node).then_some(Exprs::ZERO))
 }
 
 /// What is 0 by the values of parameters, and the products that such factors remove.
+///
+/// It is made anew for each question, since the pool has grown in between.
 struct ZeroAnalysis {
     /// By expression: whether it is 0.
     zero: Vec<bool>,
@@ -74,6 +81,8 @@ struct ZeroAnalysis {
 
 impl ZeroAnalysis {
     /// Evaluates all expressions of the draft.
+    /// First by ascending ids, which settles what follows from parameters alone; then through definitions of variables.
+    /// `zero` has an entry for every node of the pool, live or not.
     fn find(draft: &DaeDraft, known: &mut SignAnalysis) -> Self {
         let (count, pool) = (draft.variables.len(), &draft.exprs);
         let mut found =
@@ -98,6 +107,7 @@ impl ZeroAnalysis {
     }
 
     /// Carries zeros from expressions to the variables that equal them, and on to the expressions that contain these.
+    /// A work list of expressions that are newly known to be 0. Each expression enters it once.
     fn spread(&mut self, draft: &DaeDraft, known: &mut SignAnalysis, mut open: Vec<ExprId>) {
         let mut defined: FxHashMap<ExprId, Vec<VarId>> = FxHashMap::default();
         for equation in &draft.equations {
@@ -129,6 +139,9 @@ impl ZeroAnalysis {
     }
 
     /// Whether an expression is 0, from what is known about its arguments.
+    ///
+    /// A sum is 0 if both terms are. A quotient is 0 if its numerator is. An unknown `if` is 0 if both branches are.
+    /// A product is 0 if one of its factors is, which is what this analysis looks for.
     fn is_zero(&self, draft: &DaeDraft, known: &mut SignAnalysis, e: ExprId) -> bool {
         if let Some(value) = known.value(&draft.exprs, e) {
             return value == 0.0;
@@ -154,6 +167,7 @@ impl ZeroAnalysis {
 
     /// The parameters that make an expression 0. Of a product only the factor that is 0 counts, of an `if` with a known
     /// condition the condition and the chosen branch.
+    /// The walk follows definitions of variables and visits each expression once.
     fn parameters(&self, draft: &DaeDraft, known: &mut SignAnalysis, e: ExprId) -> Vec<VarId> {
         let (mut open, mut seen, mut found) = (vec![e], FxHashSet::default(), Vec::new());
         while let Some(e) = open.pop() {
@@ -177,12 +191,14 @@ impl ZeroAnalysis {
     }
 
     /// The factor that is 0 of a product in `products`; `None` for other expressions. Binary search.
+    /// The list is sorted, because the pool is scanned in order.
     fn factor(&self, product: ExprId) -> Option<ExprId> {
         self.products.binary_search_by_key(&product, |p| p.0).ok().map(|i| self.products[i].1)
     }
 }
 
 /// The inverse of operands: the expressions that contain each expression as an operand.
+/// It is stored as a compressed list, as in the incidence matrix.
 struct ExpressionUsers {
     /// By expression: where its users begin in `users`, and one more entry for the end.
     starts: Vec<u32>,
@@ -226,6 +242,7 @@ impl ExpressionUsers {
 }
 
 /// Functions whose value at 0 is 0.
+/// Functions such as `exp` and `cos` are not among them.
 const KEEP_ZERO: [UnaryFunction; 9] = [
     UnaryFunction::Neg,
     UnaryFunction::Abs,
@@ -239,6 +256,7 @@ const KEEP_ZERO: [UnaryFunction; 9] = [
 ];
 
 /// The continuous variable that an equation with this left side defines; `None` for other left sides.
+/// Only equations with the variable alone on the left side count.
 fn defined_by(draft: &DaeDraft, lhs: ExprId) -> Option<VarId> {
     match draft.exprs.node(lhs) {
         ExprNode::Var(v) if draft.role(v) == SystemRole::Continuous => Some(v),
@@ -248,6 +266,7 @@ fn defined_by(draft: &DaeDraft, lhs: ExprId) -> Option<VarId> {
 
 /// The solvable incidence of a system after its expressions have been replaced. An equation may be solved for what it
 /// could be solved for before, if that still occurs.
+/// Discrete rows keep their entries, because they are solved for the variable on one side.
 fn without(draft: &DaeDraft, system: &EquationSystem, map: &[ExprId]) -> IncidenceMatrix {
     let image = |e: ExprId| map.get(e.index()).copied().unwrap_or(e);
     let columns = UnknownColumns::new(&system.columns, draft.variables.len());

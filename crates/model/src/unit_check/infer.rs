@@ -43,6 +43,8 @@ pub(super) struct UnitRelation {
 }
 
 /// All places of a model where units must fit: equations, attributes, assignments in `when`, assertions, in this order.
+///
+/// Attributes are binding, `start`, `min`, `max` and `nominal`. The value of a `reinit` counts as an assignment.
 pub(super) fn relations(model: &FlatModel) -> Vec<UnitRelation> {
     let mut found = Vec::with_capacity(model.equations.len() + model.variables.len());
     for equation in model.equations.iter().chain(&model.initial_equations) {
@@ -124,6 +126,9 @@ impl<'a> UnitInference<'a> {
     }
 
     /// Finds the units of undeclared variables, until nothing more follows.
+    ///
+    /// It is a work list: a relation enters it again when the unit of one of its variables was found. It does nothing
+    /// if all variables declare units.
     pub fn infer(&mut self, relations: &[UnitRelation]) {
         if !self.variables.iter().any(|measure| matches!(measure, UnitKnowledge::Unknown)) {
             return;
@@ -179,6 +184,9 @@ impl<'a> UnitInference<'a> {
     }
 
     /// Works through a relation: bottom-up, then across its sides, then top-down.
+    ///
+    /// The known unit of one side is expected of the other side; the first side may be a variable that gets its unit
+    /// so.
     fn work_through(&mut self, number: usize, relation: &UnitRelation) {
         self.evaluate(number, |_, _| {});
         let (left, right) = (self.side(relation.lhs), self.nodes[relation.rhs.index()]);
@@ -200,6 +208,7 @@ impl<'a> UnitInference<'a> {
 
     /// Evaluates the nodes of a relation bottom-up. `look` sees each node when its arguments have their units, before
     /// its own unit is set.
+    /// Nodes shared with other relations keep no unit from them: each evaluation starts from the variables.
     pub fn evaluate(&mut self, relation: usize, mut look: impl FnMut(&Self, ExprId)) {
         for i in self.nodes_of(relation) {
             let e = self.order[i];
@@ -223,6 +232,7 @@ impl<'a> UnitInference<'a> {
     }
 
     /// The unit of a node from those of its arguments.
+    /// Calls have an unknown unit, since functions are not looked into.
     fn combine(&self, e: ExprId) -> UnitKnowledge {
         match self.model.exprs.node(e) {
             ExprNode::Num(bits) => UnitKnowledge::of_number(f64::from_bits(bits)),
@@ -266,6 +276,7 @@ impl<'a> UnitInference<'a> {
     }
 
     /// Gives a node without a known unit the one that its place asks for.
+    /// A number that fits anywhere keeps its kind.
     fn expect(&mut self, e: ExprId, quantity: PartialUnit) {
         if matches!(self.nodes[e.index()], UnitKnowledge::Unknown) {
             self.nodes[e.index()] = UnitKnowledge::Known(quantity);
@@ -280,6 +291,7 @@ impl<'a> UnitInference<'a> {
     }
 
     /// Gives a variable without a known unit the one that was found, and records it in `fresh`.
+    /// A unit that is known is never replaced.
     fn assign(&mut self, v: VarId, measure: UnitKnowledge) {
         if matches!((self.variables[v.index()], measure), (UnitKnowledge::Unknown, UnitKnowledge::Known(_))) {
             self.variables[v.index()] = measure;
@@ -288,6 +300,9 @@ impl<'a> UnitInference<'a> {
     }
 
     /// Passes the unit of a node down to its arguments, where the operation determines theirs.
+    ///
+    /// Of a product the unit of one factor follows from the other one, of a power that of the base from a constant
+    /// exponent. Both sides of a comparison have the same unit.
     fn push_down(&mut self, e: ExprId) {
         let node = self.model.exprs.node(e);
         if let ExprNode::Rel(_, a, b) | ExprNode::EventRel(_, a, b) = node {
@@ -345,6 +360,7 @@ impl<'a> UnitInference<'a> {
 
 /// What is known about a variable that declares no unit. Integers, Booleans and enumerations are numbers. A parameter
 /// with a plain number as its value may stand for anything. The units of all others are to be found.
+/// A variable without a unit is not a number: its unit is inferred.
 fn undeclared(model: &FlatModel, variable: &FlatVariable) -> UnitKnowledge {
     let is_number = |e: Option<ExprId>| e.is_none_or(|e| model.exprs.as_num(e).is_some());
     if variable.ty != ScalarType::Real {

@@ -64,6 +64,7 @@ struct UnitMismatch {
 }
 
 /// Compares two units. `None` where they agree or one of them is not known.
+/// Unknown units and numbers never make a mismatch.
 fn mismatch(part: Option<ExprId>, left: UnitKnowledge, right: UnitKnowledge) -> Option<UnitMismatch> {
     let (left, right) = (left.known()?, right.known()?);
     let difference = left.difference(right)?;
@@ -71,12 +72,15 @@ fn mismatch(part: Option<ExprId>, left: UnitKnowledge, right: UnitKnowledge) -> 
 }
 
 /// Compares the sides of a relation, after its nodes have been evaluated.
+/// A lone expression has no sides to compare.
 fn outer_mismatch(units: &UnitInference, relation: &UnitRelation) -> Option<UnitMismatch> {
     mismatch(None, units.side(relation.lhs), units.of(relation.rhs))
 }
 
 /// Compares the arguments of a node: terms of a sum, sides of a comparison, branches of an `if`, and arguments that
 /// must be numbers. `None` for other nodes.
+///
+/// In sums the zero point is ignored: a temperature and a difference of temperatures may be added.
 fn inner_mismatch(units: &UnitInference, e: ExprId) -> Option<UnitMismatch> {
     let number = UnitKnowledge::Known(PartialUnit::NUMBER);
     let (left, right) = match units.model.exprs.node(e) {
@@ -99,6 +103,9 @@ fn inner_mismatch(units: &UnitInference, e: ExprId) -> Option<UnitMismatch> {
 }
 
 /// The warning about a mismatch: what meets where, in which units, and the variables that take part.
+///
+/// The message says what meets in which units; notes list the variables, and further places show from which equations
+/// the units of undeclared variables follow.
 fn report(
     units: &UnitInference,
     relations: &[UnitRelation],
@@ -137,6 +144,7 @@ fn report(
 
 /// The two sides that are compared. `None` for a side that is no expression, such as the plain number that a function
 /// wants.
+/// For a function or an exponent only the argument is shown.
 fn meeting_places(
     units: &UnitInference,
     relation: &UnitRelation,
@@ -155,6 +163,7 @@ fn meeting_places(
 }
 
 /// A unit as the user wrote it if the side is a variable that declares it; else in SI base units.
+/// So `bar` is printed as `bar` and not as 100000 Pa.
 fn named(units: &UnitInference, side: RelationSide, quantity: PartialUnit) -> String {
     let variable = match side {
         RelationSide::Var(v) => Some(v),
@@ -168,6 +177,7 @@ fn named(units: &UnitInference, side: RelationSide, quantity: PartialUnit) -> St
 }
 
 /// The message, and the label at the place.
+/// An example: "`p + q` adds Pa and m3/s", with the label "Pa + m3/s".
 fn words(
     model: &FlatModel,
     relation: &UnitRelation,
@@ -210,6 +220,8 @@ fn words(
 
 /// The variables of a side with their units, one line each, and the place from which the unit of an undeclared one
 /// follows. At most [`MOST_TERMS`] lines; variables without a known unit are left out.
+///
+/// A derivative or `pre` counts as its variable. `relation` is the one that the mismatch belongs to.
 fn terms(
     units: &UnitInference,
     relations: &[UnitRelation],
@@ -248,6 +260,7 @@ fn terms(
 }
 
 /// Advice how to convert: by the offset of a temperature, or by the factor between the units.
+/// A difference of offsets means degC against K.
 fn conversion(mismatch: &UnitMismatch) -> String {
     let (left, right) = (mismatch.left, mismatch.right);
     let shift = right.offset - left.offset;
@@ -259,6 +272,8 @@ fn conversion(mismatch: &UnitMismatch) -> String {
 }
 
 /// The warning about one unit string.
+/// A class with many instances is reported once.
+/// The help shows the notation.
 fn unreadable_units(model: &FlatModel, unreadable: &[infer::UnreadableUnit]) -> Vec<Diagnostic> {
     let mut seen = FxHashSet::default();
     let mut found = Vec::new();
@@ -281,6 +296,7 @@ fn unreadable_unit(model: &FlatModel, v: VarId, error: &UnitError) -> Diagnostic
 }
 
 /// Warnings for a `displayUnit` of another dimension than the `unit`, once for each pair of units.
+/// The code is W230. Strings that cannot be read are skipped here.
 fn display_units(model: &FlatModel) -> Vec<Diagnostic> {
     let mut seen = FxHashSet::default();
     let mut found = Vec::new();

@@ -1,4 +1,5 @@
-//! Cases are texts: declarations `name unit` (`?` declares none, `=1e5` makes it a parameter with that value), a line of
+//! Cases are texts: declarations `name unit` (`?` declares none, `=1e5` makes it a parameter with that value), a line
+//! of
 //! equations, and the warnings that are expected, each as code and message.
 
 use super::*;

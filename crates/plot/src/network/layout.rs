@@ -1,8 +1,10 @@
-//! Where the boxes of a network stand.
+//! Decides where the boxes of a network are placed.
 //!
-//! Components are put into columns by their distance from one end of the network, so that a connection joins equal or
-//! neighbouring columns; within a column they are ordered by the mean place of their neighbours, which avoids most
-//! crossings. Long networks turn back and go on in the next row.
+//! A [`ComponentGraph`] enters, a [`DiagramLayout`] leaves. Components are put into columns by their distance from one
+//! end of the network, so a connection joins equal or neighbouring columns. Within a column they are ordered by the
+//! mean place of their neighbours, which avoids most crossings. Long networks turn back and continue in the next row.
+//!
+//! Parts that are not connected are placed one below the other.
 
 use std::collections::VecDeque;
 
@@ -14,63 +16,77 @@ use bramah_model::network::ComponentGraph;
 
 /// Columns in a row before the network turns.
 const COLUMNS: usize = 8;
-/// Between columns, for the wires.
+/// Horizontal space between columns, for the connections.
 const GAP_X: f64 = 90.0;
-/// Between boxes of a column.
+/// Vertical space between boxes of a column.
 const GAP_Y: f64 = 22.0;
-/// Around everything.
+/// Space around the drawing.
 const MARGIN: f64 = 20.0;
-/// Height of name and class in a box, and of a port.
+/// Height of the lines with name and class in a box.
 const HEAD: f64 = 38.0;
+/// Height of a port in a box.
 const PORT: f64 = 16.0;
-/// Side of a symbol.
+/// Side of a symbol in a box.
 pub(super) const SYMBOL: f64 = 40.0;
 
-/// The side of a box.
+/// The side of a box on which a port is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BoxSide {
     Left,
     Right,
 }
 
-/// Where a wire begins.
+/// A place where a connection ends.
 #[derive(Clone, Copy, Debug)]
+/// Horizontal coordinate.
 pub(super) struct WireEnd {
+    /// Vertical coordinate.
     pub x: f64,
+    /// The side of the box, in whose direction the connection leaves.
     pub y: f64,
     pub side: BoxSide,
 }
 
-/// A component.
+/// The box of a component.
 #[derive(Clone, Debug, Default)]
+/// Left edge.
 pub(super) struct LayoutBox {
+    /// Upper edge.
     pub x: f64,
+    /// Width of the box.
     pub y: f64,
+    /// Height of the box.
     pub width: f64,
     pub height: f64,
-    /// Drawn in the middle, between the ports.
+    /// Symbol between the ports; `None` for classes without one.
     pub symbol: Option<&'static str>,
+    /// Ports on the left, from top to bottom.
     left: Vec<String>,
+    /// Ports on the right, from top to bottom.
     right: Vec<String>,
 }
 
 impl LayoutBox {
-    /// The upper left corner of the symbol.
+    /// The upper left corner of the symbol, which is centred below name and class.
     pub fn symbol_place(&self) -> (f64, f64) {
         let room = self.height - HEAD - 4.0;
         (self.x + (self.width - SYMBOL) / 2.0, self.y + HEAD + (room - SYMBOL) / 2.0)
     }
 }
 
-/// All boxes, by the numbers of their nodes.
+/// The boxes of a network, by the index of their node, and the size of the drawing.
 #[derive(Clone, Debug, Default)]
 pub(super) struct DiagramLayout {
+    /// Boxes by node.
     pub boxes: Vec<LayoutBox>,
+    /// Width of the drawing.
     pub width: f64,
+    /// Height of the drawing.
     pub height: f64,
 }
 
 impl DiagramLayout {
+    /// Places all boxes of a network.
     pub fn new(graph: &ComponentGraph) -> Self {
         let neighbours = neighbours(graph);
         let mut layout =
@@ -85,6 +101,8 @@ impl DiagramLayout {
         let mut top = MARGIN;
         for part in parts(&neighbours) {
             let columns = ordered(columns(&part, &neighbours), &neighbours);
+            // Sides of ports depend on the horizontal places, heights on the sides, and vertical places on the heights;
+            // hence this order.
             for (r, row) in columns.chunks(COLUMNS).enumerate() {
                 layout.place_x(row, r % 2 == 1);
             }
@@ -98,7 +116,7 @@ impl DiagramLayout {
         layout
     }
 
-    /// Where a port is for a wire to the box `other`: a port with wires to both sides stands on both.
+    /// The place of a port for a connection to the box `other`. A port with connections on both sides is drawn on both.
     pub fn end(&self, node: usize, port: &str, other: usize) -> WireEnd {
         let wished = self.side_towards(node, other);
         let places = self.places(node, port);
@@ -107,7 +125,7 @@ impl DiagramLayout {
         found.copied().unwrap_or(WireEnd { x: b.x, y: b.y, side: BoxSide::Left })
     }
 
-    /// All places where a port is drawn.
+    /// All places where a port is drawn: one, or one on each side.
     pub fn places(&self, node: usize, port: &str) -> Vec<WireEnd> {
         let b = &self.boxes[node];
         let y = |i: usize| b.y + HEAD + PORT * (i as f64 + 0.5);
@@ -117,17 +135,18 @@ impl DiagramLayout {
         left.into_iter().chain(right).collect()
     }
 
-    /// Boxes of one column are joined on their right.
+    /// The side of a box that faces another one. Boxes in the same column are connected on their right.
     fn side_towards(&self, node: usize, other: usize) -> BoxSide {
         let middle = |b: &LayoutBox| b.x + b.width / 2.0;
         let away = middle(&self.boxes[other]) - middle(&self.boxes[node]);
         if away < -1.0 { BoxSide::Left } else { BoxSide::Right }
     }
 
-    /// Columns from left to right, or from right to left where the network has turned.
+    /// Places the boxes of a row horizontally: from left to right, or from right to left after a turn.
     fn place_x(&mut self, row: &[Vec<usize>], turned: bool) {
         let width = |column: &[usize], boxes: &[LayoutBox]| column.iter().map(|&n| boxes[n].width).fold(0.0, f64::max);
         let widths: Vec<f64> = row.iter().map(|c| width(c, &self.boxes)).collect();
+        // A turned row begins at the right edge of a full row, below the end of the row before.
         let full = COLUMNS as f64 * 150.0 + (COLUMNS - 1) as f64 * GAP_X;
         let total = widths.iter().sum::<f64>() + GAP_X * (widths.len() - 1) as f64;
         let mut x = if turned { MARGIN + full.max(total) } else { MARGIN };
@@ -136,13 +155,14 @@ impl DiagramLayout {
                 x -= width;
             }
             for &node in column {
+                // Boxes are centred in their column.
                 self.boxes[node].x = x + (width - self.boxes[node].width) / 2.0;
             }
             x += if turned { -GAP_X } else { width + GAP_X };
         }
     }
 
-    /// A port looks to the sides where its wires go.
+    /// Chooses the sides of all ports by the directions of their connections, then the heights of the boxes.
     fn choose_sides(&mut self, graph: &ComponentGraph, part: &[usize]) {
         for &node in part {
             let index = NodeIndex::new(node);
@@ -153,6 +173,7 @@ impl DiagramLayout {
                 if sides.contains(&BoxSide::Left) {
                     b.left.push(port.clone());
                 }
+                // A port without any connection is drawn too, so that an open port can be seen.
                 if sides.contains(&BoxSide::Right) || sides.is_empty() {
                     b.right.push(port.clone());
                 }
@@ -163,7 +184,8 @@ impl DiagramLayout {
         }
     }
 
-    /// Stacks the columns of a row, each centred and then drawn towards its neighbours; returns where the next begins.
+    /// Places the boxes of a row vertically: centred at first, then moved towards their neighbours. Returns where the
+    /// next row begins.
     fn place_y(&mut self, row: &[Vec<usize>], top: f64, neighbours: &[Vec<usize>]) -> f64 {
         let height = |layout: &DiagramLayout, column: &[usize]| -> f64 {
             column.iter().map(|&n| layout.boxes[n].height + GAP_Y).sum::<f64>() - GAP_Y
@@ -177,6 +199,7 @@ impl DiagramLayout {
             }
         }
         let members: Vec<usize> = row.iter().flatten().copied().collect();
+        // Each move changes the wishes of the neighbours; three rounds are enough for a calm picture.
         for _ in 0..3 {
             for column in row {
                 self.settle(column, (top, top + tallest), &members, neighbours);
@@ -185,7 +208,7 @@ impl DiagramLayout {
         top + tallest + 2.0 * GAP_Y
     }
 
-    /// Moves each box of a column towards the mean of its neighbours in the row, keeping order and distances.
+    /// Moves each box of a column towards the mean of its neighbours in the row. The order and the gaps stay.
     fn settle(&mut self, column: &[usize], (top, bottom): (f64, f64), members: &[usize], neighbours: &[Vec<usize>]) {
         let middle = |b: &LayoutBox| b.y + b.height / 2.0;
         let mut y = top;
@@ -196,6 +219,7 @@ impl DiagramLayout {
             let b = &self.boxes[node];
             let wish =
                 if near.is_empty() { b.y } else { near.iter().sum::<f64>() / near.len() as f64 - b.height / 2.0 };
+            // The boxes below need this much room.
             let latest = bottom + GAP_Y - room;
             let place = wish.clamp(y, latest.max(y));
             room -= b.height + GAP_Y;
@@ -205,7 +229,7 @@ impl DiagramLayout {
     }
 }
 
-/// Where the wire goes that leaves `node` at `port`, if it does.
+/// The node at the other end of a connection that leaves `node` at `port`. `None`: it does not.
 fn other_end(graph: &ComponentGraph, edge: EdgeIndex, node: NodeIndex, port: &str) -> Option<NodeIndex> {
     let (a, b) = graph.edge_endpoints(edge)?;
     let wire = &graph[edge];
@@ -218,6 +242,7 @@ fn other_end(graph: &ComponentGraph, edge: EdgeIndex, node: NodeIndex, port: &st
     }
 }
 
+/// The width of a box: enough for name, class, the names of two ports side by side and the symbol.
 fn box_width(component: &bramah_model::network::ComponentBox, symbol: bool) -> f64 {
     let chars = |s: &str| s.chars().count() as f64;
     let class = component.class.rsplit('.').next().unwrap_or("");
@@ -226,7 +251,7 @@ fn box_width(component: &bramah_model::network::ComponentBox, symbol: bool) -> f
     (7.2 * chars(&component.name)).max(6.0 * chars(class)).max(2.0 * 5.6 * port + between).max(70.0) + 18.0
 }
 
-/// Each node's neighbours, without itself, in the order of their numbers.
+/// The neighbours of each node, without itself, in ascending order.
 fn neighbours(graph: &ComponentGraph) -> Vec<Vec<usize>> {
     let mut all = vec![Vec::new(); graph.node_count()];
     for edge in graph.edge_references() {
@@ -243,7 +268,7 @@ fn neighbours(graph: &ComponentGraph) -> Vec<Vec<usize>> {
     all
 }
 
-/// Connected parts, each by the numbers of its nodes.
+/// The connected parts of the network, each as a list of its nodes.
 fn parts(neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut seen = vec![false; neighbours.len()];
     let mut parts = Vec::new();
@@ -258,7 +283,7 @@ fn parts(neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
     parts
 }
 
-/// Nodes and their distance from the start, nearest first.
+/// All nodes that can be reached, with their distance from `start`, nearest first (breadth-first search).
 fn distances(start: usize, neighbours: &[Vec<usize>]) -> Vec<(usize, usize)> {
     let mut seen = vec![false; neighbours.len()];
     seen[start] = true;
@@ -275,13 +300,15 @@ fn distances(start: usize, neighbours: &[Vec<usize>]) -> Vec<(usize, usize)> {
     out
 }
 
-/// A part in columns of equal distance from one of its ends; of the two ends the one declared first.
+/// The columns of a part: nodes of equal distance from one of its ends. Of the two ends, the component declared first
+/// is taken.
 fn columns(part: &[usize], neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let farthest = |from: usize| {
         let all = distances(from, neighbours);
         let most = all.iter().map(|d| d.1).max().unwrap_or(0);
         all.iter().filter(|d| d.1 == most).map(|d| d.0).min().unwrap_or(from)
     };
+    // The node farthest from any node is an end of the network; the one farthest from it is the other end.
     let end = farthest(part[0]);
     let start = end.min(farthest(end));
     let mut columns: Vec<Vec<usize>> = Vec::new();
@@ -294,11 +321,12 @@ fn columns(part: &[usize], neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
     columns
 }
 
-/// Orders each column by the mean place of its neighbours, forth and back some times.
+/// Orders the nodes of each column by the mean rank of their neighbours, in eight sweeps to and fro.
 fn ordered(mut columns: Vec<Vec<usize>>, neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut rank = vec![0.0; neighbours.len()];
     let number = |column: &[usize], rank: &mut Vec<f64>| {
         for (i, &node) in column.iter().enumerate() {
+            // Ranks go from 0 to 1 in each column, so that columns of different length compare.
             rank[node] = (i as f64 + 0.5) / column.len() as f64;
         }
     };

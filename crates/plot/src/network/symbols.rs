@@ -1,17 +1,22 @@
-//! Symbols of components, after ISO 1219-1 and the customs of the other trades: `symbols/<full name of the class>.svg`, each
-//! in a field of 48 by 48 in the colour of the text around it.
+//! Symbols of components, after ISO 1219-1 and the conventions of other fields.
+//!
+//! The files are `symbols/CLASS.svg` with the full name of the class. Each is drawn in a field of 48 by 48 units in the
+//! colour of the surrounding text.
 
 use include_dir::{Dir, include_dir};
 
+/// The symbol files, embedded at compile time.
 static SYMBOLS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/network/symbols");
 
-/// The side of a symbol's field.
+/// Side of the field of a symbol.
 pub const FIELD: f64 = 48.0;
 
-/// The drawing of the first of the classes that has one: of a component's class, and then of those that it extends.
+/// The drawing of the first class that has a symbol; `None` when none has. Pass the class of a component, followed by
+/// its base classes.
 pub fn symbol<'c>(classes: impl IntoIterator<Item = &'c str>) -> Option<&'static str> {
     classes.into_iter().find_map(|class| {
         let text = SYMBOLS.get_file(format!("{class}.svg"))?.contents_utf8()?;
+        // The symbol is placed into a picture, so only the content of its outer element is used.
         let inner = text.find("viewBox=\"0 0 48 48\">")? + "viewBox=\"0 0 48 48\">".len();
         text.get(inner..text.rfind("</svg>")?)
     })

@@ -33,6 +33,7 @@ impl EquationCombination {
     ///
     /// `None` where the rows depend on each other by values only (of what changes, or of parameters that may not be
     /// fixed), where no row can be replaced, or where the sum still contains a derivative of highest order.
+    /// `found` lists the rows with numeric factors, which hold for the present values only.
     pub fn new(
         draft: &mut DaeDraft,
         known: &mut SignAnalysis,
@@ -47,7 +48,7 @@ impl EquationCombination {
         let offsets = || rows.iter().map(|&row| jacobian.offsets[row]);
         let least = offsets().min()?;
         // The replaced row must have the smallest offset, so that the others need only be differentiated, and a factor
-        // that cannot vanish, so that no solution is gained or lost.
+        // that cannot vanish, so that the set of solutions stays the same.
         let mut may_be = |i: &usize| {
             let [factor]: &[Monomial] = &factors[*i] else { return false };
             jacobian.offsets[rows[*i]] == least && factor.expressions().all(|e| known.is_nonzero(&draft.exprs, e))
@@ -79,6 +80,7 @@ impl EquationCombination {
 
     /// Whether no derivative of highest order is left, neither in terms nor in factors. `offset` is that of the
     /// replaced row.
+    /// Only then has the combination lowered the order of the system.
     fn is_lower(
         &self,
         draft: &DaeDraft,
@@ -98,6 +100,7 @@ impl EquationCombination {
 
     /// What is left where the sum contains no unknown: 0 where the equations repeat each other, else an expression that
     /// would have to be 0. `None` where the sum is an equation for unknowns.
+    /// The caller ends the analysis with a message in the first two cases.
     pub fn contradiction(&self, draft: &mut DaeDraft) -> Option<ExprId> {
         let mut sum = Exprs::ZERO;
         for ((e, times), factor) in &self.rest {
@@ -115,6 +118,7 @@ impl EquationCombination {
 
     /// Writes the sum in the place of equation `at`. Adds the derivatives that it needs. `Err` where one does not exist
     /// (E304).
+    /// The equation becomes `sum = 0` and keeps its origin.
     pub fn write(&self, draft: &mut DaeDraft, reduction: &mut IndexReduction, at: usize) -> Result<(), Diagnostic> {
         let equation = draft.equations[at];
         let mut sum = Exprs::ZERO;
@@ -140,6 +144,7 @@ impl EquationCombination {
 }
 
 /// Adds a term to the like one, if there is one. Terms that cancel are removed.
+/// Two terms are like if their places and the expressions in their factors are equal.
 fn add_to<T: PartialEq>(terms: &mut Vec<(T, Monomial)>, of: T, factor: Monomial) {
     let Some(at) = terms.iter().position(|t| t.0 == of && t.1.is_like(&factor)) else {
         return terms.push((of, factor));
@@ -155,6 +160,7 @@ fn add_to<T: PartialEq>(terms: &mut Vec<(T, Monomial)>, of: T, factor: Monomial)
 /// First choice are factors that hold whatever the expressions in the rows are worth. Where rows depend on each other
 /// only with the parameters as they are, these parameters are fixed if that is allowed, and the factors are numbers.
 /// `None` where neither is possible.
+/// Parameters that are fixed become constants of the model: see `parameters::fix`.
 fn factors(
     draft: &mut DaeDraft,
     known: &mut SignAnalysis,

@@ -22,6 +22,7 @@ pub(super) type EliminationRow = Vec<(u32, f64)>;
 pub(super) type RowCombination = Vec<(usize, f64)>;
 
 /// The combinations of rows that vanish: as many as the number of rows exceeds the rank.
+/// `columns` is the number of columns; rows may be empty.
 pub(super) fn vanishing(rows: &[EliminationRow], columns: usize) -> Vec<RowCombination> {
     let mut elimination = NumericElimination::new(rows, columns);
     while let Some((row, column)) = elimination.next_pivot() {
@@ -104,6 +105,7 @@ impl NumericElimination {
                 continue;
             }
             let mut users = std::mem::take(&mut self.users[column as usize]);
+            // The list may contain rows twice, and rows in which the column has cancelled since.
             users.sort_unstable();
             users.dedup();
             users.retain(|&row| self.active[row as usize] && self.value(row, column).is_some());
@@ -125,6 +127,7 @@ impl NumericElimination {
         self.rank[pivot as usize] = self.pivots.len();
         self.pivots.push(pivot);
         let of_pivot = self.rows[pivot as usize].clone();
+        // `next_pivot` returns existing entries only.
         let Some(divisor) = self.value(pivot, column) else { return };
         for row in std::mem::take(&mut self.users[column as usize]) {
             if let Some(value) = self.value(row, column).filter(|_| row != pivot) {
@@ -183,6 +186,7 @@ impl NumericElimination {
 
     /// The combination of the given rows that an empty row stands for: what was subtracted is traced back to the rows
     /// as they were. The largest factor is 1 in size.
+    /// It undoes the scaling of the rows.
     fn combination(&self, row: usize) -> RowCombination {
         let mut open: BTreeMap<usize, f64> = BTreeMap::new();
         let subtract = |open: &mut BTreeMap<usize, f64>, of: usize, by: f64| {

@@ -58,6 +58,7 @@ impl Monomial {
     }
 
     /// Adds to the exponent of an expression.
+    /// An exponent that becomes 0 is removed.
     fn raise(&mut self, e: ExprId, exponent: i32) {
         match self.powers.binary_search_by_key(&e, |power| power.0) {
             Ok(at) => {
@@ -71,6 +72,7 @@ impl Monomial {
     }
 
     /// Whether two factors differ by a number only.
+    /// Like terms can be added.
     pub fn is_like(&self, other: &Monomial) -> bool {
         self.powers == other.powers
     }
@@ -81,12 +83,14 @@ impl Monomial {
     }
 
     /// The expressions that it contains.
+    /// Powers are written as repeated products and quotients.
     pub fn expressions(&self) -> impl Iterator<Item = ExprId> {
         self.powers.iter().map(|power| power.0)
     }
 
     /// Its value with the parameters as they are. An expression that changes gets a value of its own, different from
     /// that of any other expression, so that sums cancel only where the same expressions do.
+    /// So a sum that vanishes here vanishes for all values of what changes, but for rounding.
     pub fn value(&self, draft: &DaeDraft, known: &mut SignAnalysis) -> f64 {
         self.powers.iter().fold(self.number, |product, &(e, exponent)| {
             // Multiples of the golden ratio modulo 1, which never repeat.

@@ -184,6 +184,7 @@ impl SystemJacobian {
     }
 
     /// An equation of the draft as a sum.
+    /// Its places are those of the present reduction.
     fn linear_form(
         &self,
         draft: &DaeDraft,
@@ -196,6 +197,7 @@ impl SystemJacobian {
     }
 
     /// The terms of a row that contain highest derivatives, by chain. A chain may occur more than once.
+    /// The factors are borrowed from the sum.
     fn entries<'l>(&self, row: usize, linear: &'l LinearForm) -> Vec<(u32, &'l Monomial)> {
         self.entries_at(self.offsets[row], linear)
     }
@@ -217,11 +219,13 @@ impl SystemJacobian {
     }
 
     /// The linear combinations of rows that vanish, with numeric factors.
+    /// Each combination is minimal: without one of its rows the others are independent.
     fn vanishing(&self) -> Vec<RowCombination> {
         elimination::vanishing(&self.rows, self.places.len())
     }
 
     /// The diagnostic where equations add up to nothing, or to `left`, which contains no unknown.
+    /// One equation alone means that its own unknowns cancel.
     fn explain(
         &self,
         draft: &DaeDraft,

@@ -56,6 +56,7 @@ impl SymbolicElimination {
         let mut chains: Vec<u32> = rows.iter().flatten().map(|entry| entry.0).collect();
         chains.sort_unstable();
         chains.dedup();
+        // Each row starts as itself: factor 1 for its own number.
         let row = |(r, given): (usize, &Vec<(u32, &Monomial)>)| {
             let mut row = SymbolicRow {
                 entries: vec![MonomialSum::new(); chains.len()],
@@ -122,6 +123,7 @@ impl SymbolicElimination {
 }
 
 /// The product of two sums.
+/// Like terms are added up, and terms that cancel are removed.
 fn product(a: &[Monomial], b: &[Monomial]) -> MonomialSum {
     let mut made = MonomialSum::new();
     for left in a {

@@ -340,7 +340,8 @@ fn two_speeds_of_one_position_are_one() {
     insta::assert_snapshot!(error(&m));
 }
 
-/// `R*i = v1 - v2` between two capacities: with `R = 0` one of them is no state, and `R` and what it comes from are fixed;
+/// `R*i = v1 - v2` between two capacities: with `R = 0` one of them is no state, and `R` and what it comes from are
+/// fixed;
 /// another parameter of value 0 stays free.
 #[test]
 fn a_parameter_of_value_0_is_fixed_where_the_structure_hangs_on_it() {
