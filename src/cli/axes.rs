@@ -21,7 +21,8 @@ pub(super) struct AxisOption<'e> {
 
 impl<'e> AxisOption<'e> {
     /// Splits an entry of `option` at `=`. `Err`: there is no `=`.
-    // The values stay text: their unit is known only when the quantity has been found in the model.
+    ///
+    /// The values stay text: their unit is known only when the quantity has been found in the model.
     pub fn parse(option: &'static str, text: &'e str) -> Result<Self, CommandFailure> {
         let parts = text.split_once('=').map(|(name, values)| AxisOption { option, text, name: name.trim(), values });
         parts.ok_or_else(|| wrong(option, text, "NAME=VALUES is expected"))

@@ -56,6 +56,8 @@ enum EmitFormat {
 }
 
 /// Runs the subcommand. `Err` with a model error gives exit code 1.
+///
+/// With `--emit` the stage is written before the model is checked completely, for the stages before sorting.
 pub(super) fn run(args: &CheckArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     // Checked before the model is compiled.
     if let Some(file) = &args.output_file {
@@ -151,6 +153,8 @@ fn endings(emit: Option<EmitFormat>) -> &'static [&'static str] {
 }
 
 /// The network as text: one line for each component, then one for each connection.
+///
+/// A connection is written as in Modelica, followed by the class of its connector.
 fn network_list(graph: &ComponentGraph) -> String {
     let mut out = String::new();
     for component in graph.node_weights() {

@@ -36,8 +36,8 @@ impl RunFingerprint {
         sources.iter().for_each(|source| model.text(&source.text));
         let mut recorded = FnvHash::default();
         for input in inputs {
-            // The bits of the numbers, since printed numbers would be slower and need care with rounding.
             recorded.text(&format!("{} {:?}", input.variable.0, input.interpolation));
+            // The bits of the numbers, since printed numbers would be slower and need care with rounding.
             input.times.iter().chain(input.values.iter()).for_each(|x| recorded.bytes(&x.to_bits().to_le_bytes()));
         }
         let mut asked = FnvHash::default();

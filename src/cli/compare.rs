@@ -87,6 +87,11 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// Runs the subcommand. Returns `Wrong` (exit code 1) when a signal leaves its tube.
+///
+/// The steps in order: read both files, apply the units, cut to the time window, pair the signals, compare, print,
+/// draw.
+///
+/// `Err`: a file cannot be read, an option is wrong, or the files have no signal in common.
 pub(super) fn run(args: &CompareArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let times = match args.time_column.as_slice() {
         [] => [None, None],
@@ -139,6 +144,8 @@ fn name_units(trajectory: &mut Trajectory, assignments: &[String]) -> Result<(),
 }
 
 /// Warns when only one signal of a pair has a unit. The numbers are then compared without conversion.
+///
+/// Signals that are not Real have no unit and give no warning.
 fn warn_of_units(reference: &Trajectory, result: &Trajectory, pairs: &[(usize, usize)], messages: &MessageReporter) {
     for (a, b) in pairs.iter().map(|&(a, b)| (&reference.signals[a], &result.signals[b])) {
         if a.kind == Kind::Real && a.unit.is_empty() != b.unit.is_empty() {
@@ -188,6 +195,8 @@ fn pairs(
 }
 
 /// One entry of `--map`, `B=A` or `B=A[UNIT]`. Stores the unit in the reference.
+///
+/// Returns the indices in the reference and in the result. `Err`: a signal does not exist, or the unit is invalid.
 fn mapped(
     entry: &str,
     args: &CompareArgs,
@@ -217,6 +226,8 @@ fn mapped(
 
 /// Converts a column of the reference to `unit`. Nothing happens when a unit is unknown or the units are of different
 /// kinds.
+///
+/// `index` is the column. Values and unit change together.
 fn harmonise(trajectory: &mut Trajectory, index: usize, unit: &str) {
     let signal = &mut trajectory.signals[index];
     if unit.is_empty() || signal.unit.is_empty() || signal.unit == unit {
@@ -234,6 +245,8 @@ fn harmonise(trajectory: &mut Trajectory, index: usize, unit: &str) {
 }
 
 /// The failure for a signal that a file does not have, with a similar name when there is one.
+///
+/// `path` is the file that lacks it.
 fn missing(name: &str, path: &std::path::Path, trajectory: &Trajectory) -> CommandFailure {
     let diagnostic = Diagnostic::new(Code::BadMap, format!("`{}` has no signal `{name}`", path.display()));
     match nearest(name, trajectory.signals.iter().map(|s| s.name.as_str())) {
@@ -244,6 +257,8 @@ fn missing(name: &str, path: &std::path::Path, trajectory: &Trajectory) -> Comma
 }
 
 /// The comparison as an aligned text table.
+///
+/// Widths are counted in characters, not bytes, since units may contain other letters.
 fn table(comparison: &TrajectoryComparison) -> String {
     let head = ["signal", "unit", "rmse", "normalised", "maximum", "at s", "delay s", "outside", "verdict"];
     let mut rows: Vec<Vec<String>> = vec![head.map(str::to_owned).to_vec()];
@@ -264,6 +279,8 @@ fn table(comparison: &TrajectoryComparison) -> String {
 }
 
 /// The cells of one signal, in the order of the head. Missing numbers are `-`.
+///
+/// A signal that could not be compared shows the reason as its verdict.
 fn row(s: &SignalComparison) -> Vec<String> {
     let shown = |v: Option<f64>| v.map_or("-".to_owned(), |v| number::rounded(v, 4));
     let name = match &s.other {
@@ -291,6 +308,8 @@ fn row(s: &SignalComparison) -> Vec<String> {
 }
 
 /// A figure with one panel for each signal: the reference with its tube, and the result dashed.
+///
+/// `pairs` are the indices of the compared signals, `names` the labels of reference and result.
 fn picture(
     comparison: &TrajectoryComparison,
     reference: &Trajectory,

@@ -50,6 +50,8 @@ fn with_library<T>(act: impl FnOnce(&mut Library<'_>) -> T) -> T {
 }
 
 /// Collects classes below `id` whose own name contains `word`.
+///
+/// The search descends into packages only.
 fn search(library: &mut Library<'_>, id: ClassId, word: &str, found: &mut Vec<String>) {
     for child in children(library, id) {
         let name = library.full_name(child);
@@ -79,6 +81,8 @@ fn members(library: &mut Library<'_>, id: ClassId, page: &mut String) {
 }
 
 /// Adds public ports, parameters and replaceable parts to the page, inherited ones included.
+///
+/// Each group has a title and is left out when it is empty. A conditional port shows its condition.
 fn offers(library: &mut Library<'_>, id: ClassId, page: &mut String) {
     let (mut ports, mut parameters, mut parts) = (Vec::new(), Vec::new(), Vec::new());
     for member in names::members(library, id).into_iter().filter(|m| !m.protected) {
@@ -126,6 +130,8 @@ fn value<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> String {
 }
 
 /// Adds rows as aligned columns.
+///
+/// Each row has name, type or value, and description.
 fn table(page: &mut String, rows: &[[String; 3]]) {
     // A single long cell must not push the other columns off the terminal.
     let width = |k: usize| rows.iter().map(|r| r[k].chars().count()).max().unwrap_or(0).min(40);

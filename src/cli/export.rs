@@ -70,6 +70,8 @@ enum FmiVersionArg {
 
 /// Runs the subcommand. `Err`: the model is wrong, an output pattern matches nothing, or the runtime library is
 /// missing.
+///
+/// The steps in order: find the runtime library, compile while noting what is read, derive the variables, pack, write.
 pub(super) fn run(args: &ExportArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     // A missing library is reported before the model is compiled.
     let library = runtime(args.runtime.as_deref())?;
@@ -149,6 +151,8 @@ fn token(packed: &PackedRequest) -> String {
 /// The runtime library of units. It is searched beside the command (where a build puts it) and in `../lib` (where an
 /// installation puts it).
 ///
+/// `given` is the file of `--runtime`; it is then the only candidate.
+///
 /// `Err`: it is in none of these places.
 fn runtime(given: Option<&Path>) -> Result<Vec<u8>, CommandFailure> {
     let candidates: Vec<PathBuf> = match given {
@@ -183,6 +187,8 @@ struct FmuContents<'a> {
 
 impl FmuContents<'_> {
     /// The archive as bytes. `library` is the runtime, `picture` the network as SVG.
+    ///
+    /// The entries are the description, the packed texts, the documentation page, the licences and the library.
     fn write(&self, library: &[u8], picture: &str) -> Result<Vec<u8>, CommandFailure> {
         let failed = |e: &dyn std::fmt::Display| {
             CommandFailure::new(Code::FileAccess, format!("the unit cannot be packed: {e}"))
@@ -215,6 +221,8 @@ impl FmuContents<'_> {
     }
 
     /// The path of the library in the archive, as the standard prescribes for this machine.
+    ///
+    /// Version 2 names the folder by system and word size, version 3 by processor and system.
     fn binary(&self) -> String {
         let (arch, os) = (std::env::consts::ARCH, std::env::consts::OS);
         let folder = match (self.fmi, os) {
@@ -228,6 +236,8 @@ impl FmuContents<'_> {
     }
 
     /// The documentation page: the network, and tables of parameters, inputs and outputs.
+    ///
+    /// Values are rounded to nine digits. All texts of the model are escaped.
     fn page(&self, picture: &str) -> String {
         let class = escape(&self.interface.class);
         let mut out = format!(

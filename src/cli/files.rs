@@ -121,16 +121,19 @@ impl NewFile {
 }
 
 impl Write for NewFile {
+    /// Writes into the buffer. A closed file takes nothing.
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.out.as_mut().map_or(Ok(0), |out| out.write(bytes))
     }
 
+    /// Hands the buffer to the system.
     fn flush(&mut self) -> io::Result<()> {
         self.out.as_mut().map_or(Ok(()), Write::flush)
     }
 }
 
 impl Drop for NewFile {
+    /// Removes the temporary file, unless it is a lasting one or a device.
     fn drop(&mut self) {
         // The file is closed before it is removed, which some systems demand.
         drop(self.out.take());

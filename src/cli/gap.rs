@@ -169,7 +169,7 @@ struct StageBar {
 }
 
 impl StageBar {
-    // A spinner, because the share of the work done is not known.
+    /// A spinner on stderr, if that is a terminal. The share of the work done is not known, so there is no bar.
     fn new() -> Self {
         let terminal = std::io::IsTerminal::is_terminal(&std::io::stderr());
         let bar = terminal.then(indicatif::ProgressBar::new_spinner);

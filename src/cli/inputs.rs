@@ -211,6 +211,8 @@ fn all_driven(dae: &Dae, inputs: &[RecordedInput]) -> Result<(), CommandFailure>
 }
 
 /// The diagnostic for a mapped input that the model does not have.
+///
+/// It suggests the nearest name or lists up to ten inputs.
 fn no_input(dae: &Dae, name: &str) -> Diagnostic {
     let names: Vec<&str> = dae.inputs.iter().map(|v| dae.variables[v.index()].name.as_str()).collect();
     let diagnostic = Diagnostic::new(Code::BadMap, format!("the model has no input `{name}`"));

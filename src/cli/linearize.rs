@@ -131,6 +131,8 @@ fn list(flags: &[String]) -> Vec<String> {
 }
 
 /// Linearizes at one point and writes the model, its summary and the pictures.
+///
+/// `Err`: the names of inputs or outputs are wrong, the point has no values, or a file cannot be written.
 fn linear_model(
     args: &LinearizeArgs,
     model: &CompiledModel,
@@ -182,6 +184,8 @@ fn quasi_linear_ending(path: &str) -> Result<&'static str, CommandFailure> {
 }
 
 /// Writes a linear model in the format of the file's name.
+///
+/// JSON is the format of stdout.
 fn write(linear: &StateSpace, path: &str, messages: &MessageReporter) -> Result<(), CommandFailure> {
     match linear_ending(path)? {
         "csv" => write_text(path, &linear::csv(linear))?,
@@ -247,6 +251,8 @@ pub(super) fn run_to(model: &CompiledModel, settings: &Settings) -> Result<(Stat
 }
 
 /// Computes the quasi-linear form over the grid and writes it.
+///
+/// `Err`: the model has no such form with these quantities, or has no values at a point of the grid.
 fn quasi_linear(
     args: &LinearizeArgs,
     model: &CompiledModel,
@@ -274,7 +280,7 @@ fn quasi_linear(
     Ok(CommandStatus::Fine)
 }
 
-/// Smallest and largest value of each state and input, used to judge where the form is valid.
+/// Smallest and largest value of each state and input. The quasi-linear form is checked at random points between them.
 ///
 /// The values are those of a run, widened by a tenth of their range. Quantities that do not move get a fifth of their
 /// value on both sides.

@@ -102,8 +102,6 @@ enum CliCommand {
 }
 
 /// The outcome of a subcommand that did its work and printed its own messages.
-///
-/// How a command ended when nothing went wrong with the command itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum CommandStatus {
     /// Exit code 0.
@@ -170,7 +168,7 @@ pub fn main() -> ExitCode {
     match dispatch(cli.command, &mut messages) {
         Ok(CommandStatus::Fine) => ExitCode::SUCCESS,
         Ok(CommandStatus::Wrong) => ExitCode::from(1),
-        // With a status instead of a failure, the subcommand has printed its messages already.
+        // Only failures are printed here. A subcommand that returns a status has printed its messages itself.
         Err(failure) => {
             messages.say(&failure.diagnostics);
             ExitCode::from(failure.exit_code(&messages.sources))
@@ -179,6 +177,8 @@ pub fn main() -> ExitCode {
 }
 
 /// Calls the `run` function of the chosen subcommand.
+///
+/// The status or failure of the subcommand is passed on unchanged.
 fn dispatch(command: CliCommand, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     match command {
         CliCommand::New(args) => new::run(&args, messages),
@@ -205,6 +205,8 @@ fn dispatch(command: CliCommand, messages: &mut MessageReporter) -> Result<Comma
 }
 
 /// The panic hook: prints a request to report the bug instead of Rust's default text.
+///
+/// The text tells users that the fault is not in their model. It runs on the thread that panics.
 fn report_panic(info: &std::panic::PanicHookInfo<'_>) {
     let payload = info.payload();
     // `panic!` with a literal carries `&str`, with format arguments `String`.

@@ -165,6 +165,8 @@ fn with_unit(signal: &Signal, value: f64) -> String {
 
 /// Prints the zones of each curve.
 ///
+/// A curve has zones for positive speeds, negative ones or both.
+///
 /// `Err`: no curve has a load zone, in any direction.
 fn say(
     model: &CompiledModel,
@@ -200,6 +202,8 @@ fn say(
 }
 
 /// The zones of one direction as a line of text.
+///
+/// Units follow the numbers where the quantities have one.
 fn words(zones: &FlowCharacteristic, speed: &Signal, flow: &Signal) -> String {
     let n = |value: f64| number::rounded(value, 5);
     let saturation = match zones.saturation {
@@ -218,6 +222,8 @@ fn words(zones: &FlowCharacteristic, speed: &Signal, flow: &Signal) -> String {
 }
 
 /// A picture with one curve for each load.
+///
+/// The legend names the loads.
 fn picture(model: &CompiledModel, axes: &[PartitionAxis], flow: &Signal, curves: &[FlowCurve]) -> Figure {
     let label = |s: &Signal| if s.unit.is_empty() { s.name.clone() } else { format!("{} in {}", s.name, s.unit) };
     let series = curves.iter().enumerate().map(|(colour, curve)| PlotSeries {

@@ -1,7 +1,7 @@
 //! `bramah plot`: draws results as SVG, PNG or an interactive HTML page.
 //!
 //! Result files enter, one picture leaves. `bramah_plot` chooses the panels and draws them. Other subcommands use
-//! [`write`], [`ready`] and [`write_picture`] for their own pictures.
+//! `write`, [`ready`] and [`write_picture`] for their own pictures.
 
 use std::path::{Path, PathBuf};
 
@@ -198,6 +198,8 @@ pub(super) fn stem(path: &Path) -> String {
 }
 
 /// The failure when nothing can be drawn, with similar names and a list of the first variables.
+///
+/// `why` is the message of the drawing function.
 fn not_found(why: &str, args: &PlotArgs, trajectories: &[Trajectory]) -> CommandFailure {
     let names = || trajectories.iter().flat_map(|t| t.signals.iter().map(|s| s.name.as_str()));
     let mut diagnostic = Diagnostic::new(Code::BadArgument, why);

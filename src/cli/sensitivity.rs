@@ -56,11 +56,13 @@ pub(super) struct SensitivityArgs {
 }
 
 /// Curves in a panel of the picture.
-/// Lines of the ranking.
 const SHOWN: usize = 6;
+/// Lines of the ranking.
 const RANKED: usize = 20;
 
 /// Runs the subcommand. `Err`: the model is wrong, a run failed, or an option names nothing.
+///
+/// Outputs are checked before the run, which may take long.
 pub(super) fn run(args: &SensitivityArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     args.output_file.as_deref().map_or(Ok(()), |path| files::ready_as(path, "a table", &["csv"]))?;
     args.plot.as_deref().map_or(Ok(()), plot::ready)?;
@@ -111,6 +113,8 @@ fn variables(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<VarId>
 
 /// The parameters to vary. Without patterns these are visible Real parameters that no other parameter decides.
 ///
+/// The values that they have in the model are evaluated first, as they determine the size of a relative change.
+///
 /// `Err`: no parameter is left. Constants that the structure depends on cannot vary in a run.
 fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<SensitivityParameter>, CommandFailure> {
     let mut values = model.system.layout.values();
@@ -139,6 +143,8 @@ fn parameters(args: &SensitivityArgs, model: &CompiledModel) -> Result<Vec<Sensi
 }
 
 /// The ranking as text: a line for each of the strongest parameters.
+///
+/// Each line has a column for each variable: per cent of its range for 1 % of the parameter.
 fn words(found: &Sensitivity) -> String {
     let names: Vec<&str> = found.plain.signals.iter().map(|s| s.name.as_str()).collect();
     let mut out = format!("per cent of the range for 1 % of the parameter: {}\n", names.join(", "));
@@ -179,6 +185,8 @@ fn differences(found: &Sensitivity) -> String {
 }
 
 /// The trajectories as CSV: a column for each parameter and variable. `Err`: the text cannot be written.
+///
+/// The headers have the form `d variable / d ln parameter`.
 fn csv(found: &Sensitivity) -> Result<String, CommandFailure> {
     let mut out = Vec::new();
     let pairs: Vec<(usize, usize)> =

@@ -60,6 +60,8 @@ pub(super) struct SimulateArgs {
 
 /// Runs the subcommand and writes the statistics file, also after a failure or a panic.
 ///
+/// The statistics are written last, so that they contain the peak memory of the entire run.
+///
 /// `Err` means that the arguments, files or the model cannot be used, or that the result could not be written.
 pub(super) fn run(args: &SimulateArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     let experiment = args.model.experiment(Some(&args.run), messages)?;
@@ -78,6 +80,12 @@ pub(super) fn run(args: &SimulateArgs, messages: &mut MessageReporter) -> Result
 }
 
 /// Compiles, runs and writes the result; fills `record` on the way.
+///
+/// The steps in order: compile the model, read the recorded inputs, settle the settings, open the result file, solve,
+/// finish the file, report, draw.
+///
+/// `Err`: the model or an input is wrong, or the result cannot be written. A run that stops early is not an `Err` but
+/// gives `Wrong`.
 fn execute(
     args: &SimulateArgs,
     experiment: &ExperimentSpecification,
@@ -158,6 +166,9 @@ fn execute(
 ///
 /// A value comes from the first of these that has it: the flags or the experiment file, the model's `experiment`
 /// annotation, the span of the recording. `Err`: the run would end before its start, or goes beyond its recording.
+///
+/// A stop time from the model's annotation is used even when the recording is longer. The user is then told about
+/// `--stop-time`.
 fn settings(
     experiment: &ExperimentSpecification,
     annotation: &flat::ExperimentAnnotation,
@@ -239,6 +250,8 @@ impl RecorderSink {
 
     /// Decides after the run whether it can be continued.
     ///
+    /// Failures of writing stay inside the recorder and are reported when it is finished.
+    ///
     /// The checkpoint file is removed unless the run was interrupted and has a checkpoint.
     fn close(self, run: &RunResult) -> RecorderEnding {
         let RecorderSink { mut recorder, kept } = self;
@@ -262,11 +275,15 @@ impl RecorderSink {
 
 impl RowSink for RecorderSink {
     /// Passes a row on; breaks the run when nothing can be written any more.
+    ///
+    /// A row is a time in seconds and one value for each column.
     fn row(&mut self, time: f64, values: &[f64]) -> ControlFlow<()> {
         if self.recorder.row(time, values) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
     /// Writes the rows to the disk, then the checkpoint that refers to them.
+    ///
+    /// A run without `--checkpoint` ignores the call.
     fn checkpoint(&mut self, at: &Checkpoint) -> ControlFlow<()> {
         let Some((keeper, exists)) = &mut self.kept else { return ControlFlow::Continue(()) };
         // The rows must be on the disk before the checkpoint claims that they are.
@@ -291,6 +308,9 @@ impl RowSink for RecorderSink {
 }
 
 /// Runs the solver from the start or from a checkpoint, with a progress bar and Ctrl-C.
+///
+/// `from` is the checkpoint to continue from; `None` starts at the initial values. The solver calls the sink for each
+/// row on this thread.
 ///
 /// Returns the outcome and the sink with the rows.
 fn solve(
@@ -320,6 +340,8 @@ fn solve(
 }
 
 /// Prints the messages of an interrupted run and adds how to continue it. The exit code is 1.
+///
+/// The result file stays under its temporary name until the run is complete.
 fn suspended(run: &RunResult, checkpoint: &str, messages: &mut MessageReporter) -> CommandStatus {
     let mut diagnostics = run.diagnostics.clone();
     if let Some(error) = diagnostics.iter_mut().find(|d| d.is_error()) {
@@ -346,6 +368,9 @@ fn fill(record: &mut StatisticsRecord, run: &RunResult) {
 }
 
 /// Prints the messages of a run that is over, and one summary line when it succeeded.
+///
+/// `rows` is the number of rows in the result. The summary has the time reached, the number of steps and events, and
+/// the time that the solver took.
 fn report(run: &RunResult, rows: usize, target: &ResultTarget, messages: &MessageReporter) {
     let mut diagnostics = run.diagnostics.clone();
     // Rows up to the failure are kept, so the error names the file that has them.
@@ -372,6 +397,8 @@ fn report(run: &RunResult, rows: usize, target: &ResultTarget, messages: &Messag
 }
 
 /// Writes the picture that `--plot` asks for. `Err`: there is nothing to draw, or the file cannot be written.
+///
+/// Without choice of the user only a limited number of variables is drawn; a remark says how many are left out.
 fn draw(trajectory: &Trajectory, class: &str, path: &Path, messages: &MessageReporter) -> Result<(), CommandFailure> {
     let choice = FigureOptions { title: class.to_owned(), ..FigureOptions::default() };
     let selected = figure(&[Drawn { label: class, trajectory }], &choice)

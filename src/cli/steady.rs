@@ -68,6 +68,9 @@ pub(super) struct SteadyArgs {
 }
 
 /// Runs the subcommand. `Err`: the model is wrong or has no steady state; points found before that are written.
+///
+/// The steps in order: check the outputs, compile, find the points one after the other, print them, compute the power
+/// balance at the last point.
 pub(super) fn run(args: &SteadyArgs, messages: &mut MessageReporter) -> Result<CommandStatus, CommandFailure> {
     // The Sankey diagram has no HTML page, so the usual check of pictures does not apply.
     if let Some(path) = &args.sankey {
@@ -145,6 +148,8 @@ fn over(args: &SteadyArgs, model: &CompiledModel) -> Result<(Vec<String>, Vec<f6
 }
 
 /// The variables to show: those that `--variables` chooses, else states and top-level outputs.
+///
+/// Each variable appears once, in the order of declaration.
 fn wanted(args: &SteadyArgs, model: &CompiledModel, chosen: &LinearizationSetup) -> Result<Vec<VarId>, CommandFailure> {
     if !args.variables.is_empty() {
         return columns::choose(&model.dae, &args.variables, &super::recorder::ResultTarget::stdout());
@@ -161,6 +166,8 @@ fn wanted(args: &SteadyArgs, model: &CompiledModel, chosen: &LinearizationSetup)
 const MOMENT: f64 = 1e-3;
 
 /// Runs the model for [`MOMENT`] from a steady state and returns the rows and the last state.
+///
+/// `wanted` are the columns of the rows. `Err` has the diagnostics of a run that failed.
 fn moment(
     model: &CompiledModel,
     chosen: &LinearizationSetup,
@@ -185,6 +192,8 @@ fn settled(
 }
 
 /// Prints the points, or writes them to the file of `--output-file`.
+///
+/// `over` is the name of the quantity that was varied, if there is one. Its values stand in the time column of `table`.
 fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), CommandFailure> {
     if let Some(path) = &args.output_file {
         let mut all: Vec<Signal> = over.iter().map(Signal::new).collect();
@@ -205,6 +214,8 @@ fn tell(args: &SteadyArgs, over: &[String], table: &Trajectory) -> Result<(), Co
 }
 
 /// Prints the power balance and writes its Sankey diagram.
+///
+/// `rows` must contain the variables that the balance needs, over the time for which powers are averaged.
 fn power(
     args: &SteadyArgs,
     model: &CompiledModel,
@@ -230,6 +241,8 @@ fn power(
 }
 
 /// Writes the picture as SVG or PNG, by its name.
+///
+/// `Err`: another ending, or the file cannot be written.
 fn draw(svg: &str, path: &Path, messages: &MessageReporter) -> Result<(), CommandFailure> {
     match path.extension().map(|e| e.to_string_lossy().to_lowercase()).as_deref() {
         Some("svg") => files::write(path, svg.as_bytes())?,
@@ -250,6 +263,8 @@ fn no_picture(path: &Path) -> CommandFailure {
 }
 
 /// A power as text: W below 10 kW, else kW.
+///
+/// The value is rounded to four digits.
 fn watts(power: f64) -> String {
     if power.abs() >= 1e4 {
         format!("{} kW", number::rounded(power / 1e3, 4))
@@ -259,6 +274,8 @@ fn watts(power: f64) -> String {
 }
 
 /// The power into each component as text, then the sum of the sources and what remains.
+///
+/// The sum of all components shows how well the balance closes. It should be near zero.
 fn balance_words(budgets: &[PowerBalance]) -> String {
     let mut out = String::from("power into components, positive is lost or stored\n");
     let most = budgets.iter().map(|b| b.net.abs()).fold(0.0, f64::max);

@@ -72,6 +72,8 @@ pub(super) struct SweepArgs {
 }
 
 /// Parses `--part K/N`. `Err` is the text that clap shows.
+///
+/// K counts from 1 and is at most N.
 fn part(text: &str) -> Result<(usize, usize), String> {
     let both = text.split_once('/').and_then(|(k, n)| Some((k.trim().parse().ok()?, n.trim().parse().ok()?)));
     both.filter(|&(k, n): &(usize, usize)| k >= 1 && k <= n)
@@ -135,6 +137,8 @@ fn output(args: &SweepArgs, file: &str) -> PathBuf {
 }
 
 /// The settings of each run. `Err`: a pattern of the variables matches nothing.
+///
+/// Values of the experiment take precedence over the model's annotation.
 fn settings(
     args: &SweepArgs,
     experiment: &ExperimentSpecification,
@@ -170,6 +174,8 @@ fn with_lines(output: &Path) -> PathBuf {
 }
 
 /// Writes the complete table as Parquet, when that is asked for.
+///
+/// Called when all runs are done, as Parquet is written at once.
 fn write_parquet(args: &SweepArgs, table: &SweepTable) -> Result<(), CommandFailure> {
     let Some(path) = args.output_file.as_ref().filter(|path| is_parquet(path)) else { return Ok(()) };
     let mut bytes = Vec::new();
@@ -178,6 +184,8 @@ fn write_parquet(args: &SweepArgs, table: &SweepTable) -> Result<(), CommandFail
 }
 
 /// The table with the rows of an earlier, interrupted start of the same sweep.
+///
+/// `path` is the CSV file of the sweep.
 ///
 /// A missing file gives the `empty` table. `Err`: the file is no such table, or belongs to another sweep.
 fn resumed(path: &Path, empty: SweepTable) -> Result<SweepTable, CommandFailure> {
@@ -194,6 +202,8 @@ fn resumed(path: &Path, empty: SweepTable) -> Result<SweepTable, CommandFailure>
 }
 
 /// Performs the open runs and returns the complete table.
+///
+/// Runs that are in the table already are not repeated. A failed run counts as done; its row has the reason.
 ///
 /// `Err`: the table cannot be written, belongs to another sweep, or the user pressed Ctrl-C.
 fn execute(
@@ -262,6 +272,8 @@ type SweepOutput = Mutex<(std::fs::File, Vec<(usize, (Vec<f64>, String))>, Optio
 
 /// Performs one run and appends its line to the table. `run` counts from 1.
 ///
+/// A failed run gives NaN for all results and its reason in the column `status`.
+///
 /// Called on a thread of rayon. The lock is taken only after the run, for writing the line.
 fn one(
     args: &SweepArgs,
@@ -298,6 +310,8 @@ fn one(
 }
 
 /// Writes the rows of one run to `run_N.csv`.
+///
+/// The columns are those of the settings: the results of the sweep and the variables of the experiment.
 fn trajectory(
     folder: &Path,
     run: usize,
@@ -314,6 +328,8 @@ fn trajectory(
 }
 
 /// Prints the summary, the Sobol indices where the plan has them, and draws the picture.
+///
+/// The exit code is 0 even when runs failed, because their rows say so.
 fn report(
     args: &SweepArgs,
     sweep: &ParameterSweep,
@@ -339,6 +355,8 @@ fn report(
 }
 
 /// First-order and total Sobol indices of each result, with their confidence, as text.
+///
+/// A result that does not vary, or of which too few runs succeeded, has no indices.
 fn sobol_words(sweep: &ParameterSweep, plan: &SweepPlan, table: &SweepTable) -> String {
     let d = plan.varied.len();
     let mut out = String::new();
@@ -360,6 +378,8 @@ fn sobol_words(sweep: &ParameterSweep, plan: &SweepPlan, table: &SweepTable) -> 
 }
 
 /// Joins the tables of parts. Returns `Wrong` (exit code 1) when runs are missing.
+///
+/// The parts may be given in any order and may be incomplete.
 ///
 /// `Err`: a table cannot be read, or the tables belong to different sweeps.
 fn merge(args: &SweepArgs, messages: &MessageReporter) -> Result<CommandStatus, CommandFailure> {

@@ -1,7 +1,7 @@
 //! Completion: what may be written at a byte offset.
 //!
 //! A text that is being written does not parse. So the tokens before the offset are read instead of a syntax tree:
-//! [`CompletionContext`] notes the begun word, the dotted names before it and the open brackets. Classes and elements
+//! `CompletionContext` notes the begun word, the dotted names before it and the open brackets. Classes and elements
 //! are then looked up in the library.
 //!
 //! `signature` and `hover` use the same context.
@@ -61,6 +61,8 @@ const ELEMENT_WORDS: [&str; 18] = [
 const EQUATION_WORDS: [&str; 11] =
     ["connect", "if", "for", "when", "elsewhen", "else", "end", "initial equation", "algorithm", "assert", "reinit"];
 /// Keywords and functions in an expression.
+///
+/// Functions of the library are offered as classes instead.
 const EXPRESSION_WORDS: [&str; 24] = [
     "der", "if", "then", "else", "and", "or", "not", "time", "true", "false", "pre", "initial", "noEvent", "smooth",
     "sqrt", "abs", "sign", "sin", "cos", "exp", "log", "min", "max", "sum",
@@ -116,8 +118,10 @@ enum BracketHead {
 /// The lexical kind of the place.
 #[derive(Debug, Default, PartialEq)]
 enum LexicalRegion {
+    /// Outside comments and strings.
     #[default]
     Code,
+    /// Inside a comment.
     Comment,
     /// Inside a string. Holds the name before `=`, such as `unit`, if there is one.
     Text(Option<String>),
@@ -126,13 +130,18 @@ enum LexicalRegion {
 /// The section of a class, which decides the keywords that are offered.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 enum CompletionSection {
+    /// Declarations of components and classes.
     #[default]
     Elements,
+    /// Equations or statements.
     Equations,
 }
 
 impl CompletionContext {
     /// Reads the tokens before a byte offset.
+    ///
+    /// The word under construction and the names joined to it by dots are taken off the end. What remains is read from
+    /// the start of the text to find the section, the statement and its open brackets.
     pub fn at(text: &str, offset: u32) -> CompletionContext {
         // The text after the offset does not matter, but a string or word may reach over it.
         let all = lex(FileId(0), text).tokens;
@@ -174,6 +183,9 @@ impl CompletionContext {
     }
 
     /// Reads brackets, section and the beginning of the statement from the tokens before the word.
+    ///
+    /// `start` is the index of the first token of the present statement, `argument` that of the first token of the
+    /// present argument. Both move forward while the tokens are read.
     fn read(&mut self, text: &str, tokens: &[Token]) {
         let mut depth = 0;
         let (mut start, mut argument) = (0, 0);
@@ -235,6 +247,8 @@ impl CompletionContext {
 
     /// The class whose elements are named in the innermost of the first `n` open brackets.
     ///
+    /// An example: in `Pump pump(leak(`, `n` = 1 gives the class of `pump` and `n` = 2 the class of its element `leak`.
+    ///
     /// For a function these are its arguments. `None`: it cannot be resolved, or the bracket names no elements.
     pub fn class_of(&self, library: &mut Library<'_>, scope: ClassId, n: usize) -> Option<ClassId> {
         match &self.calls.get(n.checked_sub(1)?)?.head {
@@ -254,6 +268,8 @@ impl CompletionContext {
     }
 
     /// Whether the name of an element to modify is expected: a modification is open and its argument has just begun.
+    ///
+    /// After `=` a value is expected instead, and expressions are completed.
     fn names_elements(&self) -> bool {
         let modifies = |c: &BracketContext| {
             matches!(c.head, BracketHead::Element(..) | BracketHead::Type(_) | BracketHead::Inner(_))
@@ -263,6 +279,9 @@ impl CompletionContext {
 }
 
 /// The full name of the element whose name begins before and ends at or after a byte offset, as in the flat model.
+///
+/// An example: at `V` in `Pump pump(leak(V = 1))` it is `pump.leak.V`. This is the name by which `ParameterHints`
+/// stores values.
 ///
 /// `None`: there is no name at the offset.
 pub(super) fn full_name_at(text: &str, offset: u32) -> Option<String> {
@@ -286,6 +305,11 @@ pub(super) fn full_name_at(text: &str, offset: u32) -> Option<String> {
 }
 
 /// The completions at a byte offset. Empty in comments, and in strings other than those of units.
+///
+/// The order of the checks: strings and comments, arguments of modifications, names after a dot, and last everything in
+/// scope with the keywords.
+///
+/// Arguments of a call are completed with the inputs of the function besides everything in scope.
 pub fn complete(view: &mut DocumentView<'_, '_>, offset: u32) -> Vec<CompletionItem> {
     let context = CompletionContext::at(&view.text, offset);
     match &context.place {
@@ -317,6 +341,8 @@ pub fn complete(view: &mut DocumentView<'_, '_>, offset: u32) -> Vec<CompletionI
 }
 
 /// Keywords that fit the place.
+///
+/// They depend on the section at the beginning of a statement, and are those of expressions elsewhere.
 fn words_for(context: &CompletionContext) -> Vec<CompletionItem> {
     let words: &[&str] = match (context.begins, context.section) {
         (true, CompletionSection::Elements) => &ELEMENT_WORDS,
@@ -327,6 +353,8 @@ fn words_for(context: &CompletionContext) -> Vec<CompletionItem> {
 }
 
 /// Elements that a modification may name: public ones that are not final. Built-in types get their attributes.
+///
+/// The dotted names before the word lead further inside: in `pump(leak.` the elements of `leak` are offered.
 fn arguments(view: &mut DocumentView<'_, '_>, context: &CompletionContext, scope: ClassId) -> Vec<CompletionItem> {
     let class = context.class_of(view.library, scope, context.calls.len()).and_then(|class| {
         context.chain.iter().try_fold(class, |class, part| {
@@ -350,6 +378,10 @@ fn arguments(view: &mut DocumentView<'_, '_>, context: &CompletionContext, scope
 }
 
 /// Completions after a dot. Inside `connect(` only the ports of a component, if it has any.
+///
+/// After a component its public elements are offered. After a class these are its classes, constants and literals.
+///
+/// Empty when the names before the dot cannot be resolved.
 fn members(
     view: &mut DocumentView<'_, '_>,
     context: &CompletionContext,
@@ -373,6 +405,8 @@ fn members(
 }
 
 /// Names that need no dot: elements of the class, constants and classes of the enclosing ones, packages at the top.
+///
+/// The result is sorted by name.
 ///
 /// Inside `connect(` only elements that are not of type Real.
 fn in_scope(view: &mut DocumentView<'_, '_>, scope: ClassId, connects: bool) -> Vec<CompletionItem> {
@@ -398,12 +432,16 @@ fn in_scope(view: &mut DocumentView<'_, '_>, scope: ClassId, connects: bool) -> 
 }
 
 /// Completions for the classes in a class.
+///
+/// Inherited classes are included.
 fn classes(view: &mut DocumentView<'_, '_>, class: ClassId) -> Vec<CompletionItem> {
     let all = names::classes(view.library, class);
     all.into_iter().map(|id| class_item(view.library, id)).collect()
 }
 
 /// The completion for a class, with its description and documentation.
+///
+/// The documentation is converted to Markdown, which editors show beside the list.
 fn class_item(library: &Library<'_>, id: ClassId) -> CompletionItem {
     let class = library.class(id);
     let kind = match class.kind {
@@ -426,6 +464,8 @@ fn class_item(library: &Library<'_>, id: ClassId) -> CompletionItem {
 }
 
 /// Completions for the elements of a class that `wanted` accepts, inherited ones included.
+///
+/// The view is not available inside `wanted`; see `elements_that`.
 fn elements(
     view: &mut DocumentView<'_, '_>,
     class: ClassId,
@@ -451,6 +491,8 @@ fn elements_that(
 }
 
 /// The completion for a component, with its declaration and unit. Parameters are sorted first.
+///
+/// The sorting text begins with 0 for parameters and with 1 for all others, so that parameters are listed first.
 fn element_item<'a>(library: &mut Library<'a>, member: MemberComponent<'a>) -> CompletionItem {
     let component = member.component;
     let parameter = component.prefix.variability == Some(VariabilityPrefix::Parameter);
@@ -480,6 +522,9 @@ fn plain(label: &str, kind: CompletionItemKind) -> CompletionItem {
 }
 
 /// What a dotted name refers to, looked up from a class outwards. `None`: it cannot be resolved.
+///
+/// The first name is looked up in the class, its bases and the enclosing classes. Each further one is an element of
+/// what was found before.
 fn meant<'a>(library: &mut Library<'a>, scope: ClassId, path: &[String]) -> Option<NameTarget<'a>> {
     let (first, rest) = path.split_first()?;
     let target = names::lookup(library, scope, Symbol::new(first))?;
@@ -491,6 +536,8 @@ fn meant<'a>(library: &mut Library<'a>, scope: ClassId, path: &[String]) -> Opti
 }
 
 /// What a dotted name refers to among the elements of a class.
+///
+/// `None`: one of the names does not exist, or an element before the last one has no elements of its own.
 fn along<'a>(library: &mut Library<'a>, mut class: ClassId, path: &[String]) -> Option<NameTarget<'a>> {
     let (last, before) = path.split_last()?;
     for part in before {
@@ -501,6 +548,8 @@ fn along<'a>(library: &mut Library<'a>, mut class: ClassId, path: &[String]) -> 
 }
 
 /// The class with a dotted name, looked up from a class outwards.
+///
+/// `None`: there is no such class.
 fn named(library: &mut Library<'_>, scope: ClassId, path: &[String]) -> Option<ClassId> {
     let parts: Vec<Symbol> = path.iter().map(|p| Symbol::new(p)).collect();
     names::named(library, Some(scope), &parts, false)
@@ -520,6 +569,8 @@ fn word(text: &str, token: &Token) -> String {
 }
 
 /// The dotted name at the end of the tokens without its indices, and the number of tokens before it.
+///
+/// The tokens are read backwards. An empty list means that the tokens do not end in a name.
 fn chain_before(text: &str, tokens: &[Token]) -> (Vec<String>, usize) {
     let mut parts = Vec::new();
     let mut at = tokens.len();
@@ -555,6 +606,9 @@ fn chain_before(text: &str, tokens: &[Token]) -> (Vec<String>, usize) {
 }
 
 /// What a bracket after these tokens of a statement belongs to. `around` is the head of the enclosing bracket.
+///
+/// The name before the bracket is read first. The token before that name then decides: a type makes it a declaration,
+/// `extends` a base class, an enclosing modification an element. In all other cases it is a function.
 fn head(text: &str, tokens: &[Token], around: Option<&BracketHead>) -> BracketHead {
     match tokens.last().map(|t| t.kind) {
         Some(TokenKind::Connect) => return BracketHead::Connect,
@@ -598,6 +652,8 @@ fn head(text: &str, tokens: &[Token], around: Option<&BracketHead>) -> BracketHe
 }
 
 /// Whether a token is a prefix that may stand before an element's type.
+///
+/// While only such tokens stand before the word, the statement has not begun.
 fn is_prefix(kind: TokenKind) -> bool {
     use TokenKind as T;
     let of_type = matches!(kind, T::Parameter | T::Constant | T::Discrete | T::Input | T::Output | T::Flow | T::Stream);

@@ -1,6 +1,6 @@
 //! Inlay hints: values and units shown behind the parameters of a text, such as `V = 10 ml`.
 //!
-//! [`ParameterHints`] stores the values of models that the background check has compiled. [`hints`] puts them behind
+//! [`ParameterHints`] stores the values of models that the background check has compiled. `hints` puts them behind
 //! the bindings in a file, where the text has an expression or a number in SI units.
 
 use super::DocumentView;
@@ -33,6 +33,8 @@ struct HintValue {
 
 impl ParameterHints {
     /// Stores the parameters of a model and replaces those of an earlier version.
+    ///
+    /// Constants are stored too, as the text may contain expressions of them.
     pub fn learn(&mut self, model: &CompiledModel) {
         let system = &model.system;
         let mut values = system.layout.values();
@@ -56,6 +58,8 @@ impl ParameterHints {
 
 impl HintValue {
     /// The value as text. With `both`, the value in the unit of the model comes first.
+    ///
+    /// Without `both`, only the value in the display unit is given, if there is one.
     fn shown(&self, both: bool) -> String {
         let plain = format!("{} {}", bramah_results::number::text(self.value), self.unit).trim().to_owned();
         match self.converted() {
@@ -79,6 +83,8 @@ impl HintValue {
 }
 
 /// The hints of a file, behind the bindings of its models.
+///
+/// Empty until the background check has compiled a model of the file.
 pub fn hints(view: &mut DocumentView<'_, '_>, facts: &ParameterHints) -> Vec<InlayHint> {
     let mut found = Vec::new();
     for id in view.classes.clone() {
@@ -88,6 +94,8 @@ pub fn hints(view: &mut DocumentView<'_, '_>, facts: &ParameterHints) -> Vec<Inl
 }
 
 /// Adds the hints of one class, if it has been compiled as a model.
+///
+/// Bindings of components and modifiers in extends clauses are visited. Classes that were not compiled have no values.
 fn of_class(view: &DocumentView<'_, '_>, id: ClassId, facts: &ParameterHints, found: &mut Vec<InlayHint>) {
     let Some(values) = facts.models.get(&view.library.full_name(id)) else { return };
     let Some(body) = bramah_model::resolve::names::body(view.library.class(id)) else { return };
@@ -135,6 +143,8 @@ fn argument(
 }
 
 /// Adds one hint. A number without a unit needs none, since the text shows it already.
+///
+/// A number gets its unit and, where there is one, the value in the display unit. An expression gets its value.
 fn hint(view: &DocumentView<'_, '_>, value: &HintValue, written: &Expr, found: &mut Vec<InlayHint>) {
     let is_number = written.as_number().is_some();
     // An inherited binding may come from another file.

@@ -8,6 +8,8 @@ use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind};
 
 /// The hover text of the name at a byte offset, as Markdown. `None`: there is no name, or it cannot be resolved.
 ///
+/// The parts in order: declaration with unit, description, value in the model, documentation of a class.
+///
 /// `facts` has the parameter values of compiled models.
 pub fn hover(view: &mut DocumentView<'_, '_>, offset: u32, facts: &ParameterHints) -> Option<Hover> {
     let occurrence = occurrence_at(view, offset)?;

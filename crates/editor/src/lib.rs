@@ -77,6 +77,8 @@ impl EditorWorkspace<'_> {
     }
 
     /// Calls `act` with a new library over the user's folders and what ships with bramah.
+    ///
+    /// The library and its syntax trees live only during the call, so `act` returns what outlives them.
     fn with_library<T>(&self, act: impl for<'a> FnOnce(&mut Library<'a>, &EditorWorkspace<'a>) -> T) -> T {
         let (trees, shipped) = (SyntaxArena::new(), ShippedWorld);
         let own = self.libraries.iter().map(|l| (self.world, l.clone()));

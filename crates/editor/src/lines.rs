@@ -42,6 +42,8 @@ pub fn position(text: &str, offset: u32) -> Position {
 }
 
 /// The byte offset of a position. A column beyond the end of its line gives the end of the line.
+///
+/// A line beyond the end gives the end of the text.
 pub fn offset(text: &str, position: Position) -> u32 {
     let mut start = 0;
     for _ in 0..position.line {

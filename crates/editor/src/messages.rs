@@ -29,6 +29,8 @@ pub struct FileDiagnostic {
 }
 
 /// The syntax errors of a text.
+///
+/// They have no related places.
 pub fn of_syntax(path: &Path, text: &str) -> Vec<FileDiagnostic> {
     let mut sources = Sources::default();
     let file = sources.add(path.display().to_string(), text);
@@ -88,6 +90,8 @@ enum ConnectorKind {
 }
 
 /// The kind of connectors that a class has. Connectors with flows outrank signals.
+///
+/// `None` of the kinds is also returned when the file cannot be read or the class is not found.
 fn ports(texts: &EditorWorkspace<'_>, path: &Path, name: &str) -> ConnectorKind {
     let found = texts.look(path, |view| {
         let id = view.library.find(name)?;
@@ -120,6 +124,9 @@ fn no_link(_: &Path) -> Option<Uri> {
 }
 
 /// Converts a diagnostic. `asked` is the file that was checked.
+///
+/// Notes and help texts are appended to the message, because editors show a single text. Labels other than the first
+/// become related places.
 fn message(
     sources: &Sources,
     d: &Diagnostic,
@@ -172,6 +179,8 @@ fn message(
 }
 
 /// A further place of a diagnostic. `None`: its file has no URI.
+///
+/// Editors show these places below the diagnostic as links.
 fn related(
     sources: &Sources,
     file: FileId,

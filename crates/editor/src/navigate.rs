@@ -60,6 +60,8 @@ pub fn declared_at(library: &Library<'_>, target: NameTarget<'_>) -> Ident {
 }
 
 /// Where the name at a byte offset is declared. `None`: there is no name, or it cannot be resolved.
+///
+/// The place may be in another file, also in one that ships.
 pub fn definition(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<FileRange> {
     let target = occurrence_at(view, offset)?.target?;
     Some(FileRange::of(view.library, declared_at(view.library, target).span))
@@ -87,6 +89,8 @@ pub struct DeclarationSite {
 }
 
 /// The declaration of the name at a byte offset. `None`: there is no name, or it cannot be resolved.
+///
+/// The result is used after the view is gone, by `references` and by renaming.
 pub fn declared(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<DeclarationSite> {
     let target = occurrence_at(view, offset)?.target?;
     let ident = declared_at(view.library, target);
@@ -125,6 +129,8 @@ pub fn class_with(view: &mut DocumentView<'_, '_>, offset: u32, name: &str) -> O
 
 /// All uses of a declaration in files of the user, in the order of files and places. The declaration itself is included
 /// when it is in one of the files.
+///
+/// `files` are absolute paths. Uses in files that ship are left out, as the user cannot change them.
 pub fn references(texts: &EditorWorkspace<'_>, files: &[PathBuf], wanted: &DeclarationSite) -> Vec<FileRange> {
     let mut found = BTreeSet::new();
     texts.with_library(|library, texts| {

@@ -27,6 +27,8 @@ pub struct NameOccurrence<'a> {
 }
 
 /// The wanted names in a class and its nested classes, in the order of the syntax tree.
+///
+/// `wanted` is asked for each identifier. It usually compares the place of the identifier or its text.
 pub fn of_class<'a>(
     library: &mut Library<'a>,
     id: ClassId,
@@ -38,6 +40,8 @@ pub fn of_class<'a>(
 }
 
 /// The wanted names in the `within` clause of the file of a class.
+///
+/// Each part of the clause is a name of its own: `within A.B;` names the packages `A` and `A.B`.
 pub fn of_within<'a>(
     library: &mut Library<'a>,
     id: ClassId,
@@ -58,6 +62,8 @@ pub fn of_within<'a>(
 }
 
 /// The class whose elements a modifier names. It is resolved only when a name in the modifier is wanted.
+///
+/// References instead of copies link it to the enclosing modifier, so that building it costs nothing.
 #[derive(Clone, Copy)]
 enum ModifierTarget<'a, 'c> {
     /// The class of this name, looked up in another class.
@@ -70,9 +76,11 @@ enum ModifierTarget<'a, 'c> {
 
 /// The walk over a syntax tree.
 struct OccurrenceFinder<'l, 'a> {
+    /// Resolves names and loads the classes they refer to.
     library: &'l mut Library<'a>,
     /// Which names are wanted.
     wanted: &'l dyn Fn(&Ident) -> bool,
+    /// The wanted names so far.
     found: Vec<NameOccurrence<'a>>,
     /// Variables of the enclosing loops, innermost last.
     locals: Vec<Ident>,
@@ -80,6 +88,8 @@ struct OccurrenceFinder<'l, 'a> {
 
 impl<'a> OccurrenceFinder<'_, 'a> {
     /// Adds a wanted name and resolves it.
+    ///
+    /// `target` is called only when the name is wanted, since resolving may read other files.
     fn add(&mut self, scope: ClassId, ident: Ident, target: impl FnOnce(&mut Self) -> Option<NameTarget<'a>>) {
         if (self.wanted)(&ident) {
             let target = target(self);
@@ -88,6 +98,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Adds a wanted declaration.
+    ///
+    /// The target is known, because the declaration is the target itself.
     fn declare(&mut self, scope: ClassId, ident: Ident, target: NameTarget<'a>) {
         if (self.wanted)(&ident) {
             self.found.push(NameOccurrence { ident, target: Some(target), declares: true, scope });
@@ -95,6 +107,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks a class.
+    ///
+    /// The order is that of the text: constraint, elements, equations, algorithms and the name after `end`.
     fn class(&mut self, id: ClassId) {
         let class: &'a Class = self.library.class(id);
         self.declare(id, class.name, NameTarget::Class(id));
@@ -172,6 +186,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks everything of a component but its name: type, subscripts, modifiers, condition, constraint.
+    ///
+    /// A redeclaration inside a modifier has no declaring name, so both callers treat the name themselves.
     fn component(&mut self, scope: ClassId, component: &'a ComponentDeclaration) {
         self.path(scope, &component.class);
         self.subscripts(scope, &component.subscripts);
@@ -185,6 +201,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Adds the names of an import. They are looked up from the top level.
+    ///
+    /// `import A.{b, c}` names `A.b` and `A.c`.
     fn import(&mut self, scope: ClassId, import: &'a Import) {
         match import {
             Import::Single { path, .. } | Import::All(path) => self.dotted(scope, path, true),
@@ -199,6 +217,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Adds each part of a class name.
+    ///
+    /// A leading dot makes the name global; it is then looked up from the top level.
     fn path(&mut self, scope: ClassId, path: &'a Path) {
         self.dotted(scope, path, path.global);
     }
@@ -215,6 +235,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks a modification of the class `of`.
+    ///
+    /// Names inside its brackets belong to `of`. Its value is an expression in `scope`.
     fn modification(&mut self, scope: ClassId, of: ModifierTarget<'a, '_>, modification: Option<&'a Modification>) {
         let Some(modification) = modification else { return };
         for argument in &modification.arguments {
@@ -224,6 +246,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks one argument of a modification of the class `of`.
+    ///
+    /// An argument modifies, redeclares or removes (`break`) an element of the class.
     fn argument(&mut self, scope: ClassId, of: ModifierTarget<'a, '_>, argument: &'a ModificationArgument) {
         match &argument.kind {
             ModificationArgumentKind::Modify { path, modification, .. } => {
@@ -253,6 +277,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// The element that a dotted name refers to in the class `of`.
+    ///
+    /// `None`: the class cannot be resolved or has no such element.
     fn element_of(&mut self, of: ModifierTarget<'a, '_>, parts: &[Ident]) -> Option<NameTarget<'a>> {
         let mut class = self.modified(of)?;
         let (last, before) = parts.split_last()?;
@@ -285,6 +311,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Adds each part of a component reference.
+    ///
+    /// Subscripts are walked too; their names are looked up in the same class.
     fn reference(&mut self, scope: ClassId, reference: &'a ComponentReference) {
         for (i, part) in reference.parts.iter().enumerate() {
             self.add(scope, part.name, |w| w.meant(scope, reference, i));
@@ -293,6 +321,11 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// What part `last` of a reference refers to.
+    ///
+    /// The first part is a loop variable, a global name or a name in scope. Each further part is an element of the part
+    /// before.
+    ///
+    /// `None`: one of the parts cannot be resolved.
     fn meant(&mut self, scope: ClassId, reference: &ComponentReference, last: usize) -> Option<NameTarget<'a>> {
         let first = reference.parts[0].name;
         // Loop variables hide elements of the class; the innermost one wins.
@@ -310,6 +343,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks an expression.
+    ///
+    /// References and calls are handled here. All other kinds of expressions only have children.
     fn expression(&mut self, scope: ClassId, e: &'a Expr) {
         match &e.kind {
             ExprKind::Reference(reference) => self.reference(scope, reference),
@@ -334,6 +369,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Adds named arguments of a call. `function` resolves the function that they belong to.
+    ///
+    /// The values of the arguments are walked as expressions.
     fn named(
         &mut self,
         scope: ClassId,
@@ -351,6 +388,9 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks the body of a loop with its variables declared.
+    ///
+    /// Loops of equations, statements and comprehensions are walked alike. The variables are removed again behind the
+    /// body.
     fn within(&mut self, scope: ClassId, iterators: &'a [ForIndex], body: impl FnOnce(&mut Self)) {
         let outside = self.locals.len();
         for iterator in iterators {
@@ -364,6 +404,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks equations.
+    ///
+    /// Both sides of an equation or connection are expressions.
     fn equations(&mut self, scope: ClassId, equations: &'a [Equation]) {
         for equation in equations {
             match &equation.kind {
@@ -385,6 +427,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks statements.
+    ///
+    /// The left side of an assignment is an expression, too.
     fn statements(&mut self, scope: ClassId, statements: &'a [Statement]) {
         for statement in statements {
             match &statement.kind {
@@ -415,6 +459,8 @@ impl<'a> OccurrenceFinder<'_, 'a> {
     }
 
     /// Walks conditions and the equations or statements that depend on them.
+    ///
+    /// Serves `if` and `when`, for equations as well as statements.
     fn branches<T>(
         &mut self,
         scope: ClassId,

@@ -13,12 +13,16 @@ use bramah_syntax::token::TokenKind;
 use lsp_types::{DocumentSymbol, FoldingRange, SymbolKind};
 
 /// The classes and components of a file as a tree. Classes that the library loaded from other files are left out.
+///
+/// Components inside a class are its children. The kind of an entry decides the icon in the editor.
 pub fn symbols(view: &DocumentView<'_, '_>) -> Vec<DocumentSymbol> {
     let own = view.classes.iter().map(|&id| view.library.class(id)).filter(|class| class.span.file == view.file);
     own.map(|class| symbol(view, class)).collect()
 }
 
 /// The outline entry of a class with its elements.
+///
+/// Only classes with a body of their own have children.
 fn symbol(view: &DocumentView<'_, '_>, class: &Class) -> DocumentSymbol {
     let children = match &class.body {
         ClassBody::Long(body) => body.elements.iter().filter_map(|e| element(view, &e.kind, e.span)).collect(),
@@ -37,6 +41,8 @@ fn symbol(view: &DocumentView<'_, '_>, class: &Class) -> DocumentSymbol {
 }
 
 /// The outline entry of an element. `None` for imports and extends clauses, which declare no name.
+///
+/// Parameters and constants have kinds of their own. The declaration is shown beside the name.
 fn element(view: &DocumentView<'_, '_>, kind: &ElementKind, span: bramah_syntax::diag::Span) -> Option<DocumentSymbol> {
     match kind {
         ElementKind::Class(class) => Some(symbol(view, class)),
@@ -56,6 +62,8 @@ fn element(view: &DocumentView<'_, '_>, kind: &ElementKind, span: bramah_syntax:
 }
 
 /// An outline entry. `span` covers the declaration, the span of `name` is what the editor selects.
+///
+/// `detail` is shown beside the name.
 #[allow(deprecated, reason = "the protocol's struct has a field of that kind")]
 fn made(
     view: &DocumentView<'_, '_>,
@@ -78,6 +86,8 @@ fn made(
 }
 
 /// The ranges of classes, blocks and brackets that span several lines.
+///
+/// A range covers complete lines. Ranges within one line are left out, as there is nothing to fold.
 pub fn folds(text: &str) -> Vec<FoldingRange> {
     let lines = LineIndex::new(text);
     let mut found = Vec::new();

@@ -8,6 +8,8 @@ use lsp_types::{Documentation, ParameterInformation, ParameterLabel, SignatureHe
 
 /// Help for the innermost open bracket before a byte offset.
 ///
+/// The label lists the arguments as declared; the present one is marked. Descriptions and units appear beside it.
+///
 /// `None`: no bracket is open, or its function or class cannot be resolved.
 pub fn help(view: &mut DocumentView<'_, '_>, offset: u32) -> Option<SignatureHelp> {
     let context = CompletionContext::at(&view.text, offset);

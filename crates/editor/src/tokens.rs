@@ -26,6 +26,10 @@ pub const TYPES: [SemanticTokenType; 8] = [
 pub const MODIFIERS: [SemanticTokenModifier; 2] = [SemanticTokenModifier::DECLARATION, SemanticTokenModifier::READONLY];
 
 /// All names of a file with their meaning. Names that cannot be resolved are left out.
+///
+/// Keywords, numbers and comments are left to the editor's own grammar.
+///
+/// Positions and lengths are in UTF-16 units.
 pub fn tokens(view: &mut DocumentView<'_, '_>) -> Vec<SemanticToken> {
     let file = view.file;
     // Classes of a package may come from several files.
@@ -57,6 +61,8 @@ pub fn tokens(view: &mut DocumentView<'_, '_>) -> Vec<SemanticToken> {
 }
 
 /// The index in [`TYPES`] for a target, and whether it is constant.
+///
+/// `None` would leave the name without a colour; at present each kind of target has one.
 fn kind(library: &Library<'_>, target: NameTarget<'_>) -> Option<(u32, bool)> {
     Some(match target {
         NameTarget::Class(id) => match library.class(id).kind {

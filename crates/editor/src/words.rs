@@ -9,6 +9,8 @@ use bramah_syntax::ast::{
 };
 
 /// A string attribute of a component, such as `unit`. `None`: it is not declared, or not a string literal.
+///
+/// The attribute may be declared with the component or with its type.
 pub(super) fn attribute<'a>(library: &mut Library<'a>, member: MemberComponent<'a>, name: &str) -> Option<String> {
     match &names::attribute(library, member, name)?.kind {
         ExprKind::String(text) => Some(text.to_string()),
@@ -37,6 +39,8 @@ pub(super) fn declaration(library: &Library<'_>, component: &ComponentDeclaratio
 }
 
 /// The prefixes in the order in which Modelica demands them, each followed by a blank.
+///
+/// They are empty for a component without prefixes.
 fn prefixes(all: &ElementPrefixes, prefix: &TypePrefix) -> String {
     let words = [
         (all.final_, "final "),
@@ -72,6 +76,8 @@ pub(super) fn description<'a>(library: &Library<'a>, target: NameTarget<'a>) -> 
 }
 
 /// The HTML text of the annotation `Documentation(info = ...)` of a class. `None`: it has none.
+///
+/// It may contain any HTML; see `markdown`.
 pub(super) fn documentation<'a>(library: &Library<'a>, id: ClassId) -> Option<&'a str> {
     let annotation = library.class(id).annotation.as_ref()?;
     let info = inner(inner(annotation, "Documentation")?, "info")?;
@@ -82,6 +88,8 @@ pub(super) fn documentation<'a>(library: &Library<'a>, id: ClassId) -> Option<&'
 }
 
 /// The modification of the element `name` among the arguments of another one.
+///
+/// `None`: there is no argument of this name, or it is a redeclaration.
 fn inner<'m>(modification: &'m Modification, name: &str) -> Option<&'m Modification> {
     modification.arguments.iter().find_map(|a| match &a.kind {
         ModificationArgumentKind::Modify { path, modification: Some(m), .. } if path.parts[0].name == name => Some(m),
@@ -91,6 +99,8 @@ fn inner<'m>(modification: &'m Modification, name: &str) -> Option<&'m Modificat
 
 /// Converts the HTML of a documentation to Markdown. Only paragraphs, lists, code, emphasis, headings and tables are
 /// kept in rough form.
+///
+/// Unknown tags are dropped and their content is kept. Attributes are ignored, so links appear as their text.
 pub(super) fn markdown(html: &str) -> String {
     let mut out = String::new();
     let mut rest = html;
@@ -129,6 +139,8 @@ fn entities(text: &str) -> String {
 }
 
 /// Whether a class is a function, whose arguments are its inputs.
+///
+/// Operator functions count too.
 pub(super) fn is_function(library: &Library<'_>, id: ClassId) -> bool {
     matches!(library.class(id).kind, ClassKind::Function { .. })
 }

@@ -1,25 +1,33 @@
-//! Curves through points, as `ModelicaStandardTables` draws them: piecewise constant, linear, or cubic with the slopes of
-//! Akima and others.
+//! Curves through points, as `ModelicaStandardTables` of the Modelica Standard Library draws them.
+//! Abscissae and values enter; a piecewise constant, linear or cubic function leaves, with its derivatives.
+//! `time_table` uses one for each column, `surface` uses the slopes along both axes.
+//!
+//! Points with equal abscissae separate a curve into runs, between which it jumps. Each run is interpolated on its own.
 
 use super::options::{Extrapolation, Smoothness};
 
-/// One curve: pieces between abscissae, and what lies outside.
+/// One curve: a polynomial for each interval, and a rule for arguments outside.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableCurve {
-    /// Where each piece begins, growing.
+    /// The abscissa at which each piece begins, strictly ascending.
     starts: Vec<f64>,
-    /// Coefficients of each over the distance from its start, from the constant up.
+    /// The coefficients of each piece by powers of the distance from its start, constant first.
     pieces: Vec<[f64; 4]>,
-    /// Where the last piece ends, the value there, and the value where the first one begins: a jump may lie at both.
+    /// The abscissa at which the last piece ends.
+    /// The value at `end`, right of a jump that may be there.
     end: f64,
+    /// The value at the first abscissa, left of a jump that may be there.
     last: f64,
+    /// The kind of pieces.
     first: f64,
+    /// The rule outside.
     smoothness: Smoothness,
     extrapolation: Extrapolation,
 }
 
 impl TableCurve {
-    /// Through points whose abscissae do not decrease; two equal ones make a jump. At least one point.
+    /// Interpolates points whose abscissae do not decrease. There is at least one point; two equal abscissae make a
+    /// jump.
     pub fn new(x: &[f64], y: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Self {
         let (mut starts, mut pieces) = (Vec::new(), Vec::new());
         for run in continuous(x) {
@@ -29,6 +37,7 @@ impl TableCurve {
                 pieces.push(piece);
             }
         }
+        // A single point, or only jumps at one place: the curve is constant.
         if pieces.is_empty() {
             starts.push(x[0]);
             pieces.push([y[y.len() - 1], 0.0, 0.0, 0.0]);
@@ -36,7 +45,7 @@ impl TableCurve {
         TableCurve { starts, pieces, end: x[x.len() - 1], last: y[y.len() - 1], first: y[0], smoothness, extrapolation }
     }
 
-    /// The least abscissa.
+    /// The smallest abscissa.
     pub fn from(&self) -> f64 {
         self.starts[0]
     }
@@ -46,10 +55,12 @@ impl TableCurve {
         self.end
     }
 
-    /// The value, or a derivative of this order; where two pieces meet of the right one, or of the left one. Not a number
-    /// where nothing is to be extrapolated.
+    /// The value, or the derivative of this order.
+    /// Where two pieces meet, the right one counts, or the left one if `left` is true.
+    /// NaN outside if nothing is to be extrapolated.
     pub fn value(&self, u: f64, order: usize, left: bool) -> f64 {
         let (from, to) = (self.from(), self.end);
+        // A curve of one point has no period and no slope: it is constant everywhere.
         let single = from == to;
         if single || (from..=to).contains(&u) {
             return self.inside(u, order, left);
@@ -62,19 +73,22 @@ impl TableCurve {
         }
     }
 
-    /// An abscissa of the first period. What is asked from the left does not begin it.
+    /// The abscissa of the first period that corresponds to `u`.
+    /// Seen from the left, the end of a period belongs to the period before.
     pub fn wrapped(&self, u: f64, left: bool) -> f64 {
         let (from, period) = (self.from(), self.end - self.from());
         let turned = from + (u - from).rem_euclid(period);
         if left && turned <= from { self.end } else { turned }
     }
 
+    /// The value or derivative at an abscissa within the range of the curve.
     fn inside(&self, u: f64, order: usize, left: bool) -> f64 {
         if left && u <= self.from() {
             return constant(self.first, order);
         }
         let before = |s: &f64| if left { *s < u } else { *s <= u };
         let at = self.starts.partition_point(before).max(1) - 1;
+        // A step curve takes its last value at the end, where no piece begins any more.
         let constant_at_end = self.smoothness == Smoothness::Constant && !left && u >= self.end;
         if constant_at_end && self.extrapolation != Extrapolation::Periodic {
             return constant(self.last, order);
@@ -82,7 +96,7 @@ impl TableCurve {
         cubic(&self.pieces[at], u - self.starts[at], order)
     }
 
-    /// On with the slope of the end.
+    /// Continues the curve outside in a straight line with the slope of its end.
     fn beyond(&self, u: f64, order: usize) -> f64 {
         let (edge, value, slope) = if u < self.from() {
             (self.from(), self.first, self.pieces[0][1])
@@ -98,10 +112,12 @@ impl TableCurve {
     }
 }
 
+/// The derivative of a constant: the value itself for order 0, else 0.
 fn constant(value: f64, order: usize) -> f64 {
     if order == 0 { value } else { 0.0 }
 }
 
+/// The value or derivative of a cubic at distance `d` from the start of its piece.
 fn cubic(c: &[f64; 4], d: f64, order: usize) -> f64 {
     match order {
         0 => c[0] + ((c[3] * d + c[2]) * d + c[1]) * d,
@@ -112,7 +128,7 @@ fn cubic(c: &[f64; 4], d: f64, order: usize) -> f64 {
     }
 }
 
-/// Ranges of points between jumps.
+/// The ranges of points between jumps, in order. Each has at least one point.
 fn continuous(x: &[f64]) -> Vec<std::ops::Range<usize>> {
     let mut runs = Vec::new();
     let mut begin = 0;
@@ -125,6 +141,7 @@ fn continuous(x: &[f64]) -> Vec<std::ops::Range<usize>> {
     runs
 }
 
+/// The pieces of one run, one fewer than its points. A run of one point has none.
 fn run_pieces(x: &[f64], y: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Vec<[f64; 4]> {
     let n = x.len();
     if n < 2 {
@@ -134,10 +151,12 @@ fn run_pieces(x: &[f64], y: &[f64], smoothness: Smoothness, extrapolation: Extra
     if smoothness == Smoothness::Constant {
         return y[..n - 1].iter().map(|y| [*y, 0.0, 0.0, 0.0]).collect();
     }
+    // Two points determine a line, whatever the method.
     if n == 2 || smoothness == Smoothness::Linear {
         return y.iter().zip(&secants).map(|(y, s)| [*y, *s, 0.0, 0.0]).collect();
     }
     let slopes = slopes(x, &secants, smoothness, extrapolation == Extrapolation::Periodic);
+    // The cubic with the given values and slopes at both ends (Hermite).
     let piece = |k: usize| {
         let (h, s) = (x[k + 1] - x[k], secants[k]);
         let square = (3.0 * s - 2.0 * slopes[k] - slopes[k + 1]) / h;
@@ -146,7 +165,8 @@ fn run_pieces(x: &[f64], y: &[f64], smoothness: Smoothness, extrapolation: Extra
     (0..n - 1).map(piece).collect()
 }
 
-/// The slope at each point of a cubic curve.
+/// The slope of a cubic curve at each point, from the secants between neighbours.
+/// There is one secant fewer than points, and at least two.
 pub fn slopes(x: &[f64], secants: &[f64], smoothness: Smoothness, periodic: bool) -> Vec<f64> {
     match smoothness {
         Smoothness::Akima | Smoothness::ModifiedAkima => {
@@ -156,10 +176,13 @@ pub fn slopes(x: &[f64], secants: &[f64], smoothness: Smoothness, periodic: bool
     }
 }
 
-/// Akima, J. ACM 17 (1970) 589: the mean of the secants on both sides, each weighed by how much the other side bends.
+/// Akima's slopes (J. ACM 17 (1970) 589): the mean of the secants on both sides.
+/// Each secant is weighted by how much the curve bends on the other side, so that a corner does not disturb its
+/// surroundings.
+/// `modified` adds the mean size of the secants to the weights, so that level parts stay level.
 fn akima(secants: &[f64], modified: bool, periodic: bool) -> Vec<f64> {
     let n = secants.len();
-    // two secants more on each side
+    // The weights need two secants beyond each end: those of the next period, or linear extrapolations of the secants.
     let mut d = vec![0.0; n + 4];
     d[2..n + 2].copy_from_slice(secants);
     if periodic {
@@ -174,6 +197,7 @@ fn akima(secants: &[f64], modified: bool, periodic: bool) -> Vec<f64> {
     let slope = |k: usize| {
         let (left, right) = (bend(d[k], d[k + 1]), bend(d[k + 2], d[k + 3]));
         let sum = left + right;
+        // Without any bend on both sides the weights are undefined; the plain mean is taken.
         if sum > 0.0 {
             (right * d[k + 1] + left * d[k + 2]) / sum
         } else if modified {
@@ -185,8 +209,8 @@ fn akima(secants: &[f64], modified: bool, periodic: bool) -> Vec<f64> {
     (0..=n).map(slope).collect()
 }
 
-/// Slopes that make no extremum between points: Fritsch, Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300; Steffen, Astron.
-/// Astrophys. 239 (1990) 443.
+/// Slopes that make no extremum between points.
+/// Methods: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300; Steffen, Astron. Astrophys. 239 (1990) 443.
 fn monotone(x: &[f64], secants: &[f64], steffen: bool) -> Vec<f64> {
     let n = secants.len();
     let slope = |k: usize| {
@@ -194,6 +218,7 @@ fn monotone(x: &[f64], secants: &[f64], steffen: bool) -> Vec<f64> {
             return secants[k.min(n - 1)];
         }
         let (a, b) = (secants[k - 1], secants[k]);
+        // At a local extremum of the points the slope must be 0.
         if a * b <= 0.0 {
             return 0.0;
         }

@@ -1,21 +1,25 @@
-//! The Fourier transform of a sampled signal, as `ModelicaFFT_kiss_fftr` gives it.
+//! The Fourier transform of a sampled signal, as `ModelicaFFT_kiss_fftr` of the Modelica Standard Library gives it.
+//! Samples enter as arguments; the error flag, amplitudes and phases leave as outputs.
 
 use bramah_expr::function::ExternalFunction;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// `info`, amplitudes and phases of samples in equal steps, or their derivatives by one of the samples.
+/// The spectrum of samples at equal intervals, or its derivatives by one of the samples.
+/// Outputs for n samples: `info` (0, or 1 if n is odd), then n/2+1 amplitudes, then as many phases (rad).
 ///
-/// Each output is worked out by itself from all samples, which costs their number squared in all: spectra are asked for at
-/// the end of a run, once.
+/// Each output is computed on its own from all samples, so all of them cost of the order of n squared operations.
+/// A spectrum is computed once, at the end of a run, so a fast transform is not needed.
 #[derive(Debug, Default)]
 pub struct Spectrum {
+    /// The sample of the derivative. `None` for the spectrum itself.
     by: Option<usize>,
 }
 
 impl Spectrum {
+    /// The angle of a frequency at a sample (rad).
     fn angle(samples: usize, frequency: usize, sample: usize) -> f64 {
-        // the product may be large, and only its remainder counts
+        // Only the remainder of the product counts; reducing it keeps the angle exact.
         TAU * ((frequency * sample) % samples) as f64 / samples as f64
     }
 }
@@ -33,10 +37,12 @@ impl ExternalFunction for Spectrum {
             im -= u * angle.sin();
         }
         let size = re.hypot(im);
+        // The scaling of `ModelicaFFT_kiss_fftr`.
         let scale = 1.0 / frequencies as f64;
         match (self.by, phase) {
             (None, false) => size * scale,
             (None, true) => im.atan2(re),
+            // The amplitude of a vanishing line has no derivative; 0 is taken.
             (Some(_), _) if size == 0.0 => 0.0,
             (Some(j), false) => {
                 let angle = Self::angle(n, k, j);
@@ -50,7 +56,7 @@ impl ExternalFunction for Spectrum {
     }
 
     fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
-        // nothing that is solved needs curvatures of a spectrum
+        // No solver needs second derivatives of a spectrum.
         self.by.is_none().then(|| Arc::new(Spectrum { by: Some(input) }) as Arc<dyn ExternalFunction>)
     }
 }

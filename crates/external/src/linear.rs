@@ -1,4 +1,5 @@
-//! LAPACK's solvers of linear equations and least squares, by faer.
+//! LAPACK's solvers that the Modelica Standard Library calls: `dgesv` for linear equations, `dgelsy` for least squares.
+//! They are carried out by the crate `faer`. The arguments are those of the C calls, with matrices row by row.
 
 use super::ExternalValue;
 use bramah_expr::function::ExternalFunction;
@@ -6,35 +7,41 @@ use faer::Mat;
 use faer::linalg::solvers::Solve as _;
 use std::sync::Arc;
 
-/// Singular values below this part of the largest count as zero where the caller gives no limit: some rounding errors.
+/// Singular values below this fraction of the largest count as zero if the caller sets no limit.
+/// It is a few rounding errors.
 const RANK_LIMIT: f64 = 1e-14;
 
-/// `dgesv`: X of A*X = B, or its derivative by some of the arguments, and `info`.
+/// `dgesv`: the solution X of A*X = B and then `info`, or a derivative of these.
 ///
-/// The arguments are n, nrhs, A, lda, B and ldb, matrices row by row.
+/// The arguments are n, nrhs, A, lda, B and ldb.
+/// Outputs are the elements of X row by row, then `info`.
 #[derive(Debug, Default)]
 pub struct LinearSolve {
-    /// Numbers of the arguments by which X is differentiated.
+    /// The indices of the arguments by which X is differentiated. Empty for X itself.
     by: Vec<usize>,
 }
 
-/// Where the matrices stand among the arguments.
+/// The sizes from which the positions of the matrices in the argument list follow.
 struct MatrixOffsets {
+    /// Rows and columns of A.
     n: usize,
+    /// Columns of B.
     columns: usize,
 }
 
 impl MatrixOffsets {
+    /// The sizes as given by the arguments. `None` if there are fewer arguments than these sizes need.
     fn of(args: &[f64]) -> Option<Self> {
         let places = MatrixOffsets { n: *args.first()? as usize, columns: *args.get(1)? as usize };
         (args.len() >= places.right_side() + places.n * places.columns).then_some(places)
     }
 
+    /// The index of the first element of B: n, nrhs, A and lda stand before it.
     fn right_side(&self) -> usize {
         2 + self.n * self.n + 1
     }
 
-    /// Row and column of an argument that is part of A.
+    /// The row and column of an argument that is an element of A. `None` for other arguments.
     fn of_matrix(&self, argument: usize) -> Option<(usize, usize)> {
         let at = argument.checked_sub(2).filter(|at| *at < self.n * self.n)?;
         Some((at / self.n, at % self.n))
@@ -42,7 +49,9 @@ impl MatrixOffsets {
 }
 
 impl LinearSolve {
-    /// A*X_S = B_S - sum of E_i*X_{S without i}, for both sides are linear in their elements.
+    /// The derivative of X by the arguments in `by`, from one factorisation of A.
+    /// It solves A*X_S = B_S - sum over i of E_i*X_(S without i), because A and B are linear in their elements.
+    /// E_i is 1 at the element of A that argument i stands for.
     fn derivative(
         places: &MatrixOffsets,
         args: &[f64],
@@ -50,6 +59,7 @@ impl LinearSolve {
         by: &[usize],
     ) -> Mat<f64> {
         let (n, first) = (places.n, places.right_side());
+        // The derivative of B: B itself without arguments, 1 at the element for one, 0 for several.
         let mut right = Mat::from_fn(n, places.columns, |i, j| {
             let at = first + i * places.columns + j;
             match by {
@@ -59,6 +69,7 @@ impl LinearSolve {
             }
         });
         for (k, &argument) in by.iter().enumerate() {
+            // An element of B contributes to the right side only.
             let Some((row, column)) = places.of_matrix(argument) else { continue };
             let rest: Vec<usize> = by.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, a)| *a).collect();
             let inner = Self::derivative(places, args, lu, &rest);
@@ -77,7 +88,7 @@ impl ExternalFunction for LinearSolve {
         let matrix = Mat::from_fn(n, n, |i, j| args[2 + i * n + j]);
         let lu = matrix.partial_piv_lu();
         if output >= count {
-            // `info` of LAPACK: which pivot is zero
+            // LAPACK's `info`: the number of the first zero pivot, counted from 1, or 0.
             let upper = lu.U();
             let zero = (0..n).find(|&i| upper[(i, i)] == 0.0).map_or(0.0, |i| i as f64 + 1.0);
             return if self.by.is_empty() { zero } else { 0.0 };
@@ -88,12 +99,14 @@ impl ExternalFunction for LinearSolve {
 
     fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
         let by = self.by.iter().copied().chain([input]).collect();
+        // n and nrhs are sizes, by which nothing can be differentiated.
         (input >= 2).then(|| Arc::new(LinearSolve { by }) as Arc<dyn ExternalFunction>)
     }
 }
 
-/// `dgelsy`: the shortest least-squares solution, `rank` and `info`. The arguments are those of the C call: nrow, ncol, nrhs,
-/// A, nrow, B, nx, jpvt, rcond, rank, work, lwork, info.
+/// `dgelsy`: the least-squares solution of minimum norm, then `rank` and `info`.
+/// The arguments are those of the C call: nrow, ncol, nrhs, A, nrow, B, nx, jpvt, rcond, rank, work, lwork, info.
+/// `None` if an argument is not known before the run, or the decomposition fails.
 pub fn least_squares(given: &[ExternalValue]) -> Option<Vec<ExternalValue>> {
     let known = |k: usize| match given.get(k)? {
         ExternalValue::Numbers { dims, values } => {
@@ -108,10 +121,12 @@ pub fn least_squares(given: &[ExternalValue]) -> Option<Vec<ExternalValue>> {
     let limit = known(8).and_then(|(_, v)| v.first().copied()).unwrap_or(0.0).max(RANK_LIMIT);
     let matrix = Mat::from_fn(rows, columns, |i, j| a[i * columns + j]);
     let right = Mat::from_fn(rows, sides, |i, j| b[i * sides + j]);
+    // By singular values, which also give the rank; LAPACK uses a QR factorisation with pivoting.
     let svd = matrix.thin_svd().ok()?;
     let (u, s, v) = (svd.U(), svd.S().column_vector(), svd.V());
     let largest = (0..s.nrows()).map(|k| s[k]).fold(0.0, f64::max);
     let rank = (0..s.nrows()).filter(|&k| s[k] > limit * largest).count();
+    // The solution has the shape of B, which may have more rows than the solution; the rest stays 0.
     let mut values = vec![Some(0.0); shape.iter().product()];
     for j in 0..sides {
         for k in 0..rank {

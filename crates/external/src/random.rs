@@ -1,22 +1,23 @@
 //! The random number generators of `ModelicaRandom`: Vigna's xorshift64*, xorshift128+ and xorshift1024*
-//! (<https://prng.di.unimi.it>). A state is a row of 32-bit integers, the lower half of each 64-bit word first.
+//! (<https://prng.di.unimi.it>). They are pure functions: the state is an argument, and the next state an output.
+//! A state is a list of 32-bit integers, the lower half of each 64-bit word first, as in `Modelica.Math.Random`.
 
 use bramah_expr::function::ExternalFunction;
 use std::sync::Arc;
 
-/// A generator: from a state to the next state and a number.
+/// A generator, which makes the next state and a number from a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RandomGenerator {
-    /// xorshift64*, of two integers.
+    /// xorshift64*, with a state of 2 integers.
     Star64,
-    /// xorshift128+, of four.
+    /// xorshift128+, with a state of 4 integers.
     Plus128,
-    /// xorshift1024*, of 33, the last of which is a place.
+    /// xorshift1024*, with a state of 33 integers, of which the last is the index of the current word.
     Star1024,
 }
 
 impl RandomGenerator {
-    /// How many integers a state has.
+    /// The number of integers of a state.
     #[cfg(test)]
     fn size(self) -> usize {
         match self {
@@ -26,7 +27,8 @@ impl RandomGenerator {
         }
     }
 
-    /// The next state, and a number above 0 and up to 1. `state` has 2, 4 or 33 integers.
+    /// Replaces the state by the next one, and gives a number between 0 and 1.
+    /// `state` must have 2, 4 or 33 integers.
     pub fn next(self, state: &mut [i32]) -> f64 {
         match self {
             RandomGenerator::Star64 => {
@@ -61,26 +63,30 @@ impl RandomGenerator {
     }
 }
 
+/// Word `k` of a state.
 #[allow(clippy::cast_sign_loss, reason = "the bits count")]
 fn word(state: &[i32], k: usize) -> u64 {
     u64::from(state[2 * k] as u32) | u64::from(state[2 * k + 1] as u32) << 32
 }
 
+/// Sets word `k` of a state.
 #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "the bits count")]
 fn set_word(state: &mut [i32], k: usize, x: u64) {
     (state[2 * k], state[2 * k + 1]) = (x as u32 as i32, (x >> 32) as u32 as i32);
 }
 
+/// A number between 0 and 1 from 64 random bits, by the formula of `ModelicaRandom`.
 #[allow(clippy::cast_possible_wrap, reason = "the bits count")]
 fn number(x: u64) -> f64 {
     x as i64 as f64 * 2.0_f64.powi(-64) + 0.5
 }
 
-/// A generator as a function: of a state's integers the next ones, then the number.
+/// A generator as a function for equations: from the integers of a state to those of the next one, then the number.
 #[derive(Debug)]
 pub struct RandomDraw(pub RandomGenerator);
 
 impl ExternalFunction for RandomDraw {
+    // The integers come as numbers; out of range they wrap, as a conversion in C does.
     #[allow(clippy::cast_possible_truncation, reason = "integers of 32 bits")]
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         let mut state: Vec<i32> = args.iter().map(|x| *x as i64 as i32).collect();
@@ -89,6 +95,7 @@ impl ExternalFunction for RandomDraw {
     }
 
     fn partial(&self, _: usize) -> Option<Arc<dyn ExternalFunction>> {
+        // Random numbers have no derivatives by their state.
         None
     }
 }

@@ -1,27 +1,28 @@
-//! Texts as `ModelicaStrings` treats them: places count bytes from 1.
+//! Text functions of `ModelicaStrings`, behind `Modelica.Utilities.Strings`. Positions count bytes from 1.
+//! The scanning functions take white space, then a token, and give the position behind it.
 
-/// The part from one place to another, both included; places outside are moved inside.
+/// The part of a text between two positions, both included. Positions outside are moved to the nearest end.
 pub fn substring(text: &str, from: f64, to: f64) -> String {
     let first = from.max(1.0) as usize - 1;
     let last = (to.max(0.0) as usize).min(text.len());
     text.get(first..last.max(first)).unwrap_or_default().to_owned()
 }
 
-/// 1 for less, 2 for equal, 3 for greater: the literals of `Compare`.
+/// Compares two texts: 1 for less, 2 for equal, 3 for greater, as the literals of `Modelica.Utilities.Types.Compare`.
 pub fn compare(a: &str, b: &str, case_sensitive: bool) -> f64 {
     let ordering = if case_sensitive { a.cmp(b) } else { a.to_lowercase().cmp(&b.to_lowercase()) };
     f64::from(ordering as i8) + 2.0
 }
 
-/// The first place from `from` on that is no white space.
+/// The first position at or after `from` that is not white space. One past the end if there is none.
 pub fn skip_white_space(text: &str, from: f64) -> f64 {
     let first = (from.max(1.0) as usize - 1).min(text.len());
     let blank = text.as_bytes()[first..].iter().take_while(|b| b.is_ascii_whitespace()).count();
     (first + blank + 1) as f64
 }
 
-/// The place behind a number, an identifier or a quoted text that begins after white space, and what it is; the place is 1
-/// where there is none.
+/// Skips white space and reads a token, by a function that gives its length and value.
+/// Gives the position behind the token and its value, or position 1 and `None` if there is no such token.
 pub fn scan<T>(text: &str, from: f64, token: impl Fn(&str) -> Option<(usize, T)>) -> (f64, Option<T>) {
     let first = skip_white_space(text, from) as usize - 1;
     match text.get(first..).and_then(token) {
@@ -30,26 +31,29 @@ pub fn scan<T>(text: &str, from: f64, token: impl Fn(&str) -> Option<(usize, T)>
     }
 }
 
-/// An identifier at the beginning of a text.
+/// An identifier at the beginning of a text, with its length in bytes.
 pub fn identifier(text: &str) -> Option<(usize, String)> {
     let length = text.bytes().take_while(|b| b.is_ascii_alphanumeric() || *b == b'_').count();
     let begins = text.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());
     begins.then(|| (length, text[..length].to_owned()))
 }
 
-/// A text in quotes at the beginning of a text.
+/// A string literal at the beginning of a text: its length with the quotation marks, and its content.
+/// Escapes are not resolved.
 pub fn quoted(text: &str) -> Option<(usize, String)> {
     let inner = text.strip_prefix('"')?;
     let mut escaped = false;
     let end = inner.char_indices().find(|(_, c)| {
         let ends = *c == '"' && !escaped;
+        // A backslash that is escaped itself escapes nothing.
         escaped = *c == '\\' && !escaped;
         ends
     })?;
     Some((end.0 + 2, inner[..end.0].to_owned()))
 }
 
-/// A whole number at the beginning of a text, not followed by what makes it another number.
+/// An integer at the beginning of a text, with its length. `None` if a real number stands there or it exceeds 32 bits.
+/// With `unsigned` no sign may stand before it.
 pub fn integer(text: &str, unsigned: bool) -> Option<(usize, f64)> {
     let sign = usize::from(!unsigned && text.starts_with(['+', '-']));
     let digits = text[sign..].bytes().take_while(u8::is_ascii_digit).count();
@@ -59,7 +63,7 @@ pub fn integer(text: &str, unsigned: bool) -> Option<(usize, f64)> {
     Some((length, f64::from(text[..length].parse::<i32>().ok()?)))
 }
 
-/// A number at the beginning of a text.
+/// A real number at the beginning of a text, with its length. With `unsigned` no sign may stand before it.
 pub fn real(text: &str, unsigned: bool) -> Option<(usize, f64)> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();
@@ -70,6 +74,7 @@ pub fn real(text: &str, unsigned: bool) -> Option<(usize, f64)> {
         let fraction = digits(at + 1);
         (count, at) = (count + fraction, at + 1 + fraction);
     }
+    // A point alone is no number.
     if count == 0 {
         return None;
     }
@@ -83,7 +88,7 @@ pub fn real(text: &str, unsigned: bool) -> Option<(usize, f64)> {
     Some((at, text[..at].parse().ok()?))
 }
 
-/// The hash of `ModelicaStrings_hashString`: Arash Partow's AP hash, as a signed number.
+/// The hash of `ModelicaStrings_hashString`: Arash Partow's AP hash, as a signed number of 32 bits.
 pub fn hash(text: &str) -> f64 {
     let step = |h: u32, (k, byte): (usize, u8)| {
         let c = u32::from(byte);

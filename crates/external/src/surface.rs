@@ -1,31 +1,42 @@
-//! Surfaces over a grid, as `ModelicaStandardTables` draws them: constant in each cell, bilinear, or bicubic with the slopes
-//! of Akima along both axes.
+//! Surfaces over a grid, as `CombiTable2D` of the Modelica Standard Library has them.
+//! Two axes and the values at their crossings enter; a function of two arguments leaves, with its derivatives.
+//!
+//! In each cell the surface is constant, bilinear, or bicubic with Akima's slopes along both axes.
+//! A value is a sum over the four corners of a cell of products of weights, one factor for each axis.
 
 use super::curve::slopes;
 use super::options::{Extrapolation, Smoothness};
 
-/// Values over a grid of growing abscissae.
+/// Values over a grid of ascending abscissae.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableSurface {
+    /// The abscissae of both axes, strictly ascending.
     axes: [Vec<f64>; 2],
-    /// Value, slope along the first axis, along the second, and both, at each point, row by row.
+    /// At each point: the value, its derivative along the first axis, along the second, and the mixed one. Row by row.
+    /// Derivatives are 0 unless the surface is bicubic.
     points: Vec<[f64; 4]>,
+    /// The kind of surface.
     smoothness: Smoothness,
+    /// The rule outside the grid.
     extrapolation: Extrapolation,
 }
 
-/// A place along an axis: the point before, the share of the way to the next, the distance of both, what lies beyond the
-/// end, and whether that follows the argument.
+/// The position of an argument along one axis.
 struct GridPosition {
+    /// The index of the point before it.
     at: usize,
+    /// The share of the distance to the next point, 0 to 1.
     share: f64,
+    /// The distance between both points.
     width: f64,
+    /// How far the argument lies beyond the end, for linear extrapolation. Else 0.
     beyond: f64,
+    /// False if the value does not depend on the argument, because it is held at the end or the axis has one point.
     moves: bool,
 }
 
 impl TableSurface {
-    /// `values` row by row: one row for each abscissa of the first axis.
+    /// Builds a surface. `values` are row by row, one row for each abscissa of the first axis.
     pub fn new(axes: [Vec<f64>; 2], values: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Self {
         let [n, m] = [axes[0].len(), axes[1].len()];
         let cubic = !matches!(smoothness, Smoothness::Linear | Smoothness::Constant);
@@ -33,10 +44,13 @@ impl TableSurface {
         if cubic {
             let periodic = extrapolation == Extrapolation::Periodic;
             let along = |axis: &[f64], line: &[f64]| line_slopes(axis, line, periodic);
+            // First the slopes along the first axis, column by column.
             for j in 0..m {
                 let line: Vec<f64> = (0..n).map(|i| values[i * m + j]).collect();
                 along(&axes[0], &line).into_iter().enumerate().for_each(|(i, s)| points[i * m + j][1] = s);
             }
+            // Then those along the second axis, of the values and of the slopes just found, which gives the mixed
+            // derivatives.
             for i in 0..n {
                 for (from, to) in [(0, 2), (1, 3)] {
                     let line: Vec<f64> = (0..m).map(|j| points[i * m + j][from]).collect();
@@ -47,14 +61,15 @@ impl TableSurface {
         TableSurface { axes, points, smoothness, extrapolation }
     }
 
-    /// The least and the largest abscissae.
+    /// The smallest abscissa of each axis, then the largest of each.
     pub fn range(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|end| [0, 1].map(|k| self.axes[k][end * (self.axes[k].len() - 1)]))
     }
 
-    /// The value or a derivative, of these orders along the axes.
+    /// The value, or the derivative of these orders along the axes. NaN outside if nothing is to be extrapolated.
     pub fn value(&self, u: [f64; 2], orders: [usize; 2]) -> f64 {
         let (Some(p), Some(q)) = (self.place(0, u[0]), self.place(1, u[1])) else { return f64::NAN };
+        // On an axis with one point both corners are that point; the weight of the second one is 0.
         let m = self.axes[1].len();
         let corner =
             |i: usize, j: usize| self.points[(p.at + i).min(self.axes[0].len() - 1) * m + (q.at + j).min(m - 1)];
@@ -70,6 +85,7 @@ impl TableSurface {
         sum
     }
 
+    /// The position of an argument along an axis. `None` outside if nothing is to be extrapolated.
     fn place(&self, axis: usize, u: f64) -> Option<GridPosition> {
         let x = &self.axes[axis];
         let n = x.len();
@@ -94,7 +110,7 @@ impl TableSurface {
             }
         }
         let mut at = x.partition_point(|s| *s <= inside).clamp(1, n) - 1;
-        // the last point belongs to the last cell, but where a cell has one value
+        // The last point belongs to the last cell, except for steps, where it has a value of its own.
         if self.smoothness != Smoothness::Constant {
             at = at.min(n - 2);
         }
@@ -102,10 +118,12 @@ impl TableSurface {
         Some(GridPosition { at, share: (inside - x[at]) / width, width, beyond, moves })
     }
 
-    /// What the values and the slopes at the two points around a place count.
+    /// The weights at a position: for the point before and the point after, of the value and of the slope.
+    /// With an order they are derivatives by the argument.
     fn weights(&self, p: &GridPosition, order: usize) -> [[f64; 2]; 2] {
         let still = [[1.0, 0.0], [0.0, 0.0]];
         let none = [[0.0; 2]; 2];
+        // A step surface, or an axis of one point: the value of the point before, with derivative 0.
         if self.smoothness == Smoothness::Constant || p.width == 1.0 && !p.moves && p.share == 0.0 {
             return if order == 0 { still } else { none };
         }
@@ -119,7 +137,7 @@ impl TableSurface {
         if p.beyond == 0.0 {
             return of(order);
         }
-        // on with the slope of the end
+        // Outside, the surface continues in a straight line with the slope of its end.
         match order {
             0 => sum(of(0), of(1), p.beyond),
             1 => of(1),
@@ -128,6 +146,7 @@ impl TableSurface {
     }
 }
 
+/// Akima's slopes at the points of a line. With one point 0, with two points the secant.
 fn line_slopes(axis: &[f64], line: &[f64], periodic: bool) -> Vec<f64> {
     if axis.len() < 2 {
         return vec![0.0; axis.len()];
@@ -139,10 +158,12 @@ fn line_slopes(axis: &[f64], line: &[f64], periodic: bool) -> Vec<f64> {
     slopes(axis, &secants, Smoothness::Akima, periodic)
 }
 
+/// `a + factor*b`, element by element.
 fn sum(a: [[f64; 2]; 2], b: [[f64; 2]; 2], factor: f64) -> [[f64; 2]; 2] {
     std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + factor * b[i][j]))
 }
 
+/// The weights of linear interpolation, which uses no slopes.
 fn linear(p: &GridPosition, order: usize) -> [[f64; 2]; 2] {
     match order {
         0 => [[1.0 - p.share, 0.0], [p.share, 0.0]],
@@ -151,7 +172,7 @@ fn linear(p: &GridPosition, order: usize) -> [[f64; 2]; 2] {
     }
 }
 
-/// Hermite's cubic weights over the share of a cell, or their derivatives by the abscissa.
+/// The weights of cubic Hermite interpolation. With an order their derivatives by the argument.
 fn hermite(p: &GridPosition, order: usize) -> [[f64; 2]; 2] {
     let (t, h) = (p.share, p.width);
     let polynomial = |c: [f64; 4]| match order {

@@ -1,6 +1,6 @@
 //! Writes `modelDescription.xml` by the schemas of FMI 2.0.5 and 3.0.2.
 //!
-//! An [`FmiInterface`] enters, the text of the file leaves; `bramah export` calls [`write`]. The two versions name
+//! An [`FmiInterface`] enters, the text of the file leaves; `bramah export` calls [`fn@write`]. The two versions name
 //! elements and attributes differently, and version 2 counts variables from 1 where version 3 uses value references.
 //!
 //! The order of the elements follows the schemas, which prescribe it.
@@ -90,6 +90,8 @@ fn line(text: &str) -> String {
 }
 
 /// Writes the units of all Real variables: each as powers of the base units, with its display units.
+///
+/// Display units that cannot be converted are left out. Nothing is written when no variable has a unit.
 fn units(out: &mut String, interface: &FmiInterface) {
     // Sorted maps, so that the order does not depend on a hash.
     let mut all: BTreeMap<&str, BTreeSet<&str>> = BTreeMap::new();
@@ -197,6 +199,8 @@ fn words(port: &FmiVariable) -> (&'static str, &'static str, Option<&'static str
 }
 
 /// The attributes that all types of variables have. `reference` is the value reference.
+///
+/// They are name, value reference, causality, variability and, where they exist, `initial` and the description.
 fn head(port: &FmiVariable, reference: usize) -> String {
     let (causality, variability, initial) = words(port);
     let mut out = format!(
@@ -275,6 +279,8 @@ fn variable_2(port: &FmiVariable, reference: usize) -> String {
 }
 
 /// The start attribute of a Boolean.
+///
+/// Empty for variables without start value.
 fn boolean_start(port: &FmiVariable) -> String {
     port.start.map_or_else(String::new, |s| format!(" start=\"{}\"", s != 0.0))
 }

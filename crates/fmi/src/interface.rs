@@ -78,8 +78,8 @@ impl FmiInterface {
         let inputs = simulation.inputs();
         let own = simulation.outputs();
         let is_output = |s: &Signal| own.contains(&s.name) || wanted.matches(&s.name);
-        let mut ports: Vec<FmiVariable> = simulation.parameters().into_iter().map(parameter).collect();
         // Parameters, inputs, other variables, then those of Model Exchange: the order is part of the value references.
+        let mut ports: Vec<FmiVariable> = simulation.parameters().into_iter().map(parameter).collect();
         ports.extend(inputs.iter().map(|s| FmiVariable {
             start: simulation.start_of(&s.name).ok(),
             ..FmiVariable::new(s.clone(), FmiCausality::Input)

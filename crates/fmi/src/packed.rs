@@ -62,11 +62,13 @@ impl PackedRequest {
 }
 
 impl World for PackedRequest {
+    /// The packed text of a file. `Err`: the export did not read this file.
     fn read(&self, path: &Path) -> Result<String, String> {
         let missing = || format!("the unit holds no file `{}`", path.display());
         self.files.get(&name(path)).cloned().ok_or_else(missing)
     }
 
+    /// The packed entries of a folder. `None`: the export did not list it.
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
         self.folders.get(&name(path)).cloned()
     }
@@ -105,6 +107,7 @@ impl<'a> ReadRecorder<'a> {
 }
 
 impl World for ReadRecorder<'_> {
+    /// Reads a text and notes it.
     fn read(&self, path: &Path) -> Result<String, String> {
         let text = self.base.read(path)?;
         // Only files that were read successfully; a missing file is missing in the unit too.
@@ -112,11 +115,13 @@ impl World for ReadRecorder<'_> {
         Ok(text)
     }
 
+    /// Refuses binary files, so that the export fails with a clear message.
     fn bytes(&self, _: &Path) -> Result<Vec<u8>, String> {
         // Binary files are units of other tools, and a unit cannot hold another one.
         Err("a unit cannot hold another one: export a circuit without it".to_owned())
     }
 
+    /// Lists a folder and notes its entries.
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
         let entries = self.base.list(path)?;
         self.seen.lock().unwrap_or_else(PoisonError::into_inner).folders.insert(name(path), entries.clone());

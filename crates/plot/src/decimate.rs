@@ -33,6 +33,8 @@ pub fn decimate(points: CurvePoints, columns: usize) -> CurvePoints {
 }
 
 /// Keeps first, lowest, highest and last point of each part of an ascending curve.
+///
+/// The points are in ascending order of `x`.
 fn extremes(points: &[(f64, f64)], columns: usize) -> CurvePoints {
     let (low, high) = (points[0].0, points[points.len() - 1].0);
     let scale = columns as f64 / (high - low);

@@ -46,9 +46,9 @@ pub fn write(figure: &Figure, facts: &[(String, String)]) -> String {
     write_around(figure, facts, "")
 }
 
-/// As [`write`], with HTML between the title and the curves. `before` is inserted as it stands and must be escaped.
+/// As `write`, with HTML between the title and the curves. `before` is inserted as it stands and must be escaped.
 pub fn write_around(figure: &Figure, facts: &[(String, String)], before: &str) -> String {
-    // A page without title would show its address in the browser.
+    // An HTML page must have a title.
     let title = if figure.title.is_empty() { "bramah" } else { &figure.title };
     let mut rows = String::new();
     for (name, value) in facts {
@@ -68,6 +68,8 @@ pub fn write_around(figure: &Figure, facts: &[(String, String)], before: &str) -
 
 /// Replaces the marks in a page from left to right. Inserted text is not searched for marks, since names may contain
 /// them.
+///
+/// `parts` are the marks with their texts. A mark without text stays as it is.
 fn fill(page: &str, parts: &[(&str, String)]) -> String {
     let mut out = String::new();
     let mut rest = page;
@@ -91,6 +93,8 @@ fn fill(page: &str, parts: &[(&str, String)]) -> String {
 }
 
 /// The description of all panels as JSON.
+///
+/// It is small; the coordinates follow in a list of their own.
 fn head(figure: &Figure) -> String {
     let panel = |p: &'_ FigurePanel| -> serde_json::Value {
         serde_json::to_value(PanelHead {

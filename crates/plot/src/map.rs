@@ -1,7 +1,7 @@
 //! Draws maps: quantities over two others as contour lines, as efficiencies are drawn over speed and pressure.
 //!
 //! Several runs enter. Each is a row of the map: one variable grows along the run (horizontal axis), another keeps its
-//! value (vertical axis). [`map`] interpolates them to a grid, [`write`] draws it as SVG. `bramah plot --x --y` uses
+//! value (vertical axis). `map` interpolates them to a grid, `write` draws it as SVG. `bramah plot --x --y` uses
 //! both.
 
 use super::select::{LabelledTrajectory, axis_label, shown_values};
@@ -33,6 +33,8 @@ pub struct ContourMap {
 }
 
 /// Makes a map from runs. Each run is a row at the value of `y`, and goes from left to right with `x`.
+///
+/// `variables` are the quantities to draw; each becomes a panel. All values are in display units.
 ///
 /// Two runs at the same value of `y` count once.
 ///
@@ -114,6 +116,8 @@ fn growing(run: &LabelledTrajectory<'_>, name: &str) -> Result<Vec<f64>, String>
 }
 
 /// Linear interpolation of values at a place.
+///
+/// `places` are ascending and at least two.
 fn between(places: &[f64], values: &[f64], at: f64) -> f64 {
     // The interval around the place; places outside use the first or last one.
     let i = places.partition_point(|p| *p < at).clamp(1, places.len() - 1);
@@ -160,6 +164,8 @@ impl ContourMapFrame<'_> {
     }
 
     /// Whether a number centred at this place stays inside the axes.
+    ///
+    /// The margins are half the size of a usual number.
     fn has_room(&self, (x, y): (f64, f64)) -> bool {
         let inside = |at: f64, low: f64, wide: f64, margin: f64| at > low + margin && at < low + wide - margin;
         inside(x, self.left, self.width, 18.0) && inside(y, self.top, self.height, 9.0)
@@ -171,7 +177,8 @@ impl ContourMapFrame<'_> {
     }
 
     /// All cells as two triangles each. Triangles with holes are left out.
-    // In a triangle the interpolation is linear, so a contour line is straight and unique.
+    ///
+    /// In a triangle the interpolation is linear, so a contour line is straight and unique.
     fn triangles(&self) -> Vec<[GridCorner; 3]> {
         let (rows, columns) = (self.map.y.len() - 1, self.map.x.len() - 1);
         let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
@@ -213,6 +220,8 @@ pub fn write(map: &ContourMap) -> String {
 }
 
 /// Draws one quantity: areas, lines with numbers, axes.
+///
+/// The levels are round numbers between the lowest and the highest value.
 fn panel(out: &mut String, frame: &ContourMapFrame<'_>, name: &str) {
     let triangles = frame.triangles();
     let finite = || triangles.iter().flatten().map(|c| c.2);
@@ -224,6 +233,8 @@ fn panel(out: &mut String, frame: &ContourMapFrame<'_>, name: &str) {
 }
 
 /// Draws the areas between neighbouring levels, from light to dark.
+///
+/// The lowest band reaches down and the highest one up without limit.
 fn bands(out: &mut String, frame: &ContourMapFrame<'_>, levels: &AxisTicks) {
     let edges: Vec<f64> = levels.marks.iter().map(|m| m.0).collect();
     for k in 0..=edges.len() {
@@ -281,6 +292,8 @@ fn shade(share: f64) -> String {
 }
 
 /// The part of a polygon where `inside` of the value is not negative.
+///
+/// This is one step of Sutherland and Hodgman's algorithm. The values of new corners are interpolated.
 fn clipped(polygon: &[GridCorner], inside: impl Fn(f64) -> f64) -> Vec<GridCorner> {
     let mut out = Vec::new();
     for (i, &b) in polygon.iter().enumerate() {
@@ -299,6 +312,8 @@ fn clipped(polygon: &[GridCorner], inside: impl Fn(f64) -> f64) -> Vec<GridCorne
 }
 
 /// Draws the contour lines. Each has its number near the diagonal of the map, away from other numbers.
+///
+/// The segments of a level are drawn as one path, one segment for each triangle.
 fn lines(out: &mut String, frame: &ContourMapFrame<'_>, triangles: &[[GridCorner; 3]], levels: &AxisTicks) {
     let mut texts: Vec<(f64, f64)> = Vec::new();
     let mut numbers = String::new();
@@ -331,6 +346,8 @@ fn lines(out: &mut String, frame: &ContourMapFrame<'_>, triangles: &[[GridCorner
 }
 
 /// The segment in which a level crosses a triangle. `None`: it does not.
+///
+/// The result has the two end points as x, y, x, y.
 fn crossing(triangle: &[GridCorner; 3], level: f64) -> Option<[f64; 4]> {
     let mut points = Vec::new();
     for i in 0..3 {

@@ -113,6 +113,8 @@ fn range(values: &[f64]) -> (f64, f64) {
 }
 
 /// Draws the histogram of a column and its name.
+///
+/// The range of the cell is divided into bars of equal width.
 fn spread(out: &mut String, matrix: &ScatterMatrix, column: usize, cell: &ScatterCell) {
     let mut counts = [0u32; BARS];
     let wide = cell.x.1 - cell.x.0;
@@ -140,6 +142,8 @@ fn spread(out: &mut String, matrix: &ScatterMatrix, column: usize, cell: &Scatte
 }
 
 /// Draws the dots of one column over another.
+///
+/// Rows with a value that is not finite are left out.
 fn dots(out: &mut String, matrix: &ScatterMatrix, row: usize, column: usize, cell: &ScatterCell) {
     let (xs, ys) = (&matrix.columns[column], &matrix.columns[row]);
     let shades = matrix.shade.map(|k| &matrix.columns[k]);
@@ -180,6 +184,8 @@ fn inside(middle: f64, half: f64, (begin, side): (f64, f64)) -> f64 {
 }
 
 /// Draws the edge of a cell, and the numbers at the left and the bottom of the matrix.
+///
+/// `left` and `bottom` say at which edges the cell has numbers. The power of ten of an axis is written separately.
 fn frame(out: &mut String, cell: &ScatterCell, (left, bottom): (bool, bool)) {
     let (l, t, s) = (cell.left, cell.top, cell.side);
     let _ = writeln!(

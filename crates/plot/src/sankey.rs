@@ -53,6 +53,9 @@ struct SankeyNode<'a> {
 }
 
 /// Draws the flows as SVG. `words` writes a size with its unit.
+///
+/// Bars show the nodes with name and size. A flow has the colour of the node that it leaves, and its size appears under
+/// the pointer.
 pub fn svg(title: &str, flows: &[SankeyFlow], words: impl Fn(f64) -> String) -> String {
     let back = returning(flows);
     let mut blocks = blocks(flows, &back);
@@ -77,8 +80,8 @@ pub fn svg(title: &str, flows: &[SankeyFlow], words: impl Fn(f64) -> String) -> 
         let (x0, x1) = (left(blocks[giver].column) + BAR, left(blocks[taker].column));
         let paint = colour(giver);
         let shape = if back[k] {
-            // Each one runs below the one before.
             let r = half + BEND;
+            // Each one runs below the one before.
             let bottom = lowest + half;
             lowest = bottom + half + BEND;
             format!(
@@ -144,6 +147,8 @@ fn returning(flows: &[SankeyFlow]) -> Vec<bool> {
 }
 
 /// The nodes with their columns: each one column behind the last node that feeds it.
+///
+/// The size of a node is the larger of what enters and what leaves it. Nodes are sorted by column, then by size.
 fn blocks<'a>(flows: &'a [SankeyFlow], back: &[bool]) -> Vec<SankeyNode<'a>> {
     let mut sums: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for flow in flows {
@@ -151,7 +156,7 @@ fn blocks<'a>(flows: &'a [SankeyFlow], back: &[bool]) -> Vec<SankeyNode<'a>> {
         sums.entry(&flow.to).or_default().1 += flow.size;
     }
     let mut columns: BTreeMap<&str, usize> = sums.keys().map(|n| (*n, 0)).collect();
-    // The longest path has at most as many steps as there are nodes, so so many rounds are enough.
+    // The longest path has at most as many steps as there are nodes, and one round for each is enough.
     for _ in 0..sums.len() {
         for (flow, _) in flows.iter().zip(back).filter(|(_, back)| !**back) {
             let least = columns[flow.from.as_str()] + 1;
@@ -170,6 +175,8 @@ fn blocks<'a>(flows: &'a [SankeyFlow], back: &[bool]) -> Vec<SankeyNode<'a>> {
 
 /// Stacks the nodes of each column, ordered by the heights of the nodes that feed them. Returns the height of a unit of
 /// size.
+///
+/// Columns are placed from left to right, because the order of a column depends on the places of those before.
 fn place(blocks: &mut [SankeyNode<'_>], flows: &[SankeyFlow], back: &[bool]) -> f64 {
     let columns = blocks.iter().map(|b| b.column + 1).max().unwrap_or(0);
     let total = |column: usize| blocks.iter().filter(|b| b.column == column).map(|b| b.size).sum::<f64>();

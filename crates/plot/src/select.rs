@@ -1,4 +1,8 @@
-//! From trajectories to a figure: which signals, in which panel, in which unit.
+//! Chooses what is drawn of trajectories: which signals, in which panel, in which unit.
+//!
+//! Trajectories with labels and the user's options enter, a [`Figure`] leaves. Without a choice of the user, constants
+//! and copies of the same signal are left out, and signals of one unit share a panel. The conversion to display units
+//! stands here too.
 
 use indexmap::IndexMap;
 use rustc_hash::FxHasher;
@@ -8,35 +12,35 @@ use super::figure::{Figure, FigurePanel, PlotSeries};
 use bramah_expr::units::MeasurementUnit;
 use bramah_results::{GlobPatterns, Kind, Signal, Trajectory};
 
-/// More curves than this do not share a panel: their colours would repeat.
+/// Curves in a panel. With more, the colours of the palette would repeat.
 const CURVES: usize = 7;
-/// Without a choice by the user no more signals than this are drawn.
+/// Signals that are drawn at most when the user has not chosen any.
 const UNASKED: usize = 28;
 
 /// What to draw.
 #[derive(Clone, Debug, Default)]
 pub struct FigureOptions {
-    /// Signals by name; all when empty.
+    /// Signals by name. Empty for all.
     pub variables: GlobPatterns,
-    /// Panels composed by hand, each of what its patterns match; by unit when empty.
+    /// Panels composed by the user, each with its patterns. Empty for panels by unit.
     pub panels: Vec<GlobPatterns>,
-    /// The signal on the horizontal axis; time when `None`.
+    /// The signal on the horizontal axis. `None` for time.
     pub x: Option<String>,
-    /// Stands above the picture.
+    /// Text above the picture.
     pub title: String,
 }
 
-/// Units in which values are shown that have no `displayUnit`.
+/// The units for signals without a `displayUnit`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum UnitSystem {
-    /// Those that they have.
+    /// The units of the model.
     #[default]
     AsGiven,
-    /// Those of drawings and data sheets: bar, l/min, rev/min, mm, degC.
+    /// The units of drawings and data sheets: bar, l/min, rev/min, mm, degC.
     Engineering,
 }
 
-/// What engineers write for units of SI.
+/// SI units and what engineers write instead.
 const ENGINEERING: [(&str, &str); 8] = [
     ("Pa", "bar"),
     ("m3/s", "l/min"),
@@ -49,7 +53,7 @@ const ENGINEERING: [(&str, &str); 8] = [
 ];
 
 impl UnitSystem {
-    /// Gives signals without a `displayUnit` that of the system.
+    /// Gives signals without a display unit that of the system. Values are not changed.
     pub fn apply(self, trajectory: &mut Trajectory) {
         if self == UnitSystem::AsGiven {
             return;
@@ -62,29 +66,31 @@ impl UnitSystem {
     }
 }
 
-/// A trajectory with the name that tells its curves from those of others.
+/// A trajectory with a label that distinguishes its curves from those of other runs.
 #[derive(Clone, Copy, Debug)]
 pub struct LabelledTrajectory<'a> {
-    /// Such as the file name; shown when several runs are drawn.
+    /// Label such as the file name. It is shown when several runs are drawn.
     pub label: &'a str,
     /// The signals.
     pub trajectory: &'a Trajectory,
 }
 
-/// A figure, and what the user should know about the choice made for him.
+/// A figure, and what was left out of it.
 #[derive(Clone, Debug, Default)]
 pub struct FigureSelection {
     /// What to draw.
     pub figure: Figure,
-    /// Signals left out because the user did not choose.
+    /// Number of signals left out because there were too many and the user had not chosen.
     pub left_out: usize,
 }
 
-/// Chooses and groups signals: Real ones by unit, Booleans together, each enumeration for itself. Values are shown in
-/// their `displayUnit`. Where no unit is known, equal last names share a panel.
+/// Chooses the signals and groups them into panels.
+///
+/// Real signals are grouped by unit, Booleans together, each enumeration has its own panel. Without a unit, signals
+/// with the same last name share a panel. Values are converted to their display units.
 ///
 /// # Errors
-/// A sentence when nothing matches or the horizontal signal does not exist.
+/// A sentence, when nothing matches or the signal of the horizontal axis does not exist.
 pub fn figure(runs: &[LabelledTrajectory<'_>], choice: &FigureOptions) -> Result<FigureSelection, String> {
     if !choice.panels.is_empty() {
         return by_hand(runs, choice);
@@ -100,7 +106,9 @@ pub fn figure(runs: &[LabelledTrajectory<'_>], choice: &FigureOptions) -> Result
         groups.entry(group(signal)).or_default().push(signal);
     }
     let mut panels = Vec::new();
+    // `groups` keeps the order in which the units first appear.
     for signals in groups.values() {
+        // Each run has its own curve, so several runs leave room for fewer signals.
         for part in signals.chunks((CURVES / runs.len()).max(1)) {
             panels.push(panel(runs, part, choice.x.as_deref())?);
         }
@@ -109,12 +117,15 @@ pub fn figure(runs: &[LabelledTrajectory<'_>], choice: &FigureOptions) -> Result
     Ok(FigureSelection { figure, left_out })
 }
 
-/// Panels that the user composed, each of one dimension: values are shown in the unit of its first signal.
+/// The panels that the user composed. All values of a panel are shown in the unit of its first signal.
+///
+/// `Err`: nothing matches, or a panel would hold signals of different units.
 fn by_hand(runs: &[LabelledTrajectory<'_>], choice: &FigureOptions) -> Result<FigureSelection, String> {
     let mut panels = Vec::new();
     for globs in &choice.panels {
         let one = FigureOptions { variables: globs.clone(), panels: Vec::new(), ..choice.clone() };
         let mut signals = chosen_names(runs, &one)?;
+        // The user's order of patterns is the order of the legend.
         signals.sort_by_key(|s| globs.position(&s.name));
         let like_first: Vec<Signal> = signals.iter().map(|s| shown_like(s, signals[0])).collect();
         if let Some(other) = like_first.iter().find(|s| group(s) != group(&like_first[0])) {
@@ -127,18 +138,19 @@ fn by_hand(runs: &[LabelledTrajectory<'_>], choice: &FigureOptions) -> Result<Fi
     Ok(FigureSelection { figure, left_out: 0 })
 }
 
-/// A signal shown in the unit of another, where it has its dimension.
+/// A signal that is shown in the unit of another one, if its unit can be converted; else unchanged.
 fn shown_like(signal: &Signal, first: &Signal) -> Signal {
     let like = Signal { display_unit: shown_unit(first).to_owned(), ..signal.clone() };
     if conversion(&like).is_some() || like.display_unit == like.unit { like } else { signal.clone() }
 }
 
-/// The signals to draw, each name once, in the order of the runs.
+/// The chosen signals, each name once, in the order in which they first occur in the runs. `Err`: there is none.
 fn chosen_names<'a>(runs: &[LabelledTrajectory<'a>], choice: &FigureOptions) -> Result<Vec<&'a Signal>, String> {
     let mut chosen: IndexMap<&str, &Signal> = IndexMap::new();
     for run in runs {
         for signal in &run.trajectory.signals {
             let wanted = choice.variables.is_empty() || choice.variables.matches(&signal.name);
+            // The signal of the horizontal axis would be a diagonal line.
             if wanted && choice.x.as_deref() != Some(signal.name.as_str()) {
                 chosen.entry(&signal.name).or_insert(signal);
             }
@@ -150,11 +162,14 @@ fn chosen_names<'a>(runs: &[LabelledTrajectory<'a>], choice: &FigureOptions) -> 
     Ok(chosen.into_values().collect())
 }
 
-/// Without a choice of the user: no constants, parameters among them, and what is equal everywhere once, by its shortest
-/// name; all, where nothing changes.
+/// Removes what is not worth drawing when the user has not chosen: constants, and signals with the values of another
+/// one.
+///
+/// Of equal signals the one with the shortest name stays. When nothing changes at all, everything is kept.
 fn worth_drawing(runs: &[LabelledTrajectory<'_>], chosen: &mut Vec<&Signal>) {
     let mut seen: IndexMap<u64, Vec<&Signal>> = IndexMap::new();
     for &signal in chosen.iter() {
+        // Connections make many equal signals. They are recognised by a hash of their bits.
         let (mut moves, mut values) = (false, FxHasher::default());
         for run in runs {
             let Some(index) = run.trajectory.index(&signal.name) else { continue };
@@ -168,12 +183,13 @@ fn worth_drawing(runs: &[LabelledTrajectory<'_>], chosen: &mut Vec<&Signal>) {
     }
     let depth = |s: &&&Signal| (s.name.matches('.').count(), s.name.len());
     let kept: Vec<&Signal> = seen.values().filter_map(|same| same.iter().min_by_key(depth).copied()).collect();
+    // A figure of constants is better than an empty one.
     if !kept.is_empty() {
         *chosen = kept;
     }
 }
 
-/// Signals of the same group share a panel.
+/// The group of a signal; signals of one group share a panel.
 fn group(signal: &Signal) -> String {
     match &signal.kind {
         Kind::Boolean => "Boolean".to_owned(),
@@ -183,18 +199,20 @@ fn group(signal: &Signal) -> String {
     }
 }
 
-/// `p` of `pump.b.p`, `v[3].p` and `p_A`: signals that probably measure the same.
+/// The last part of a name without index and suffix: `p` of `pump.b.p`, `v[3].p` and `p_A`. Such signals probably
+/// measure the same quantity.
 fn last_name(name: &str) -> &str {
     let last = name.rsplit('.').next().unwrap_or(name);
     let end = last.find(['_', '[']).filter(|&i| i > 0).unwrap_or(last.len());
     &last[..end]
 }
 
-/// The unit for people, where the values can be converted to it.
+/// The display unit where values can be converted to it, else the unit.
 pub fn shown_unit(signal: &Signal) -> &str {
     if conversion(signal).is_some() { &signal.display_unit } else { &signal.unit }
 }
 
+/// The units for a conversion to the display unit. `None`: there is no other one, or it has another dimension.
 fn conversion(signal: &Signal) -> Option<(MeasurementUnit, MeasurementUnit)> {
     if signal.display_unit.is_empty() || signal.display_unit == signal.unit {
         return None;
@@ -203,7 +221,7 @@ fn conversion(signal: &Signal) -> Option<(MeasurementUnit, MeasurementUnit)> {
     (from.dimension == to.dimension).then_some((from, to))
 }
 
-/// A column in the unit for people.
+/// A column of values in the display unit.
 pub fn shown_values(signal: &Signal, column: &[f64]) -> Vec<f64> {
     match conversion(signal) {
         Some((from, to)) => column.iter().map(|&v| from.convert(v, &to).unwrap_or(v)).collect(),
@@ -211,7 +229,7 @@ pub fn shown_values(signal: &Signal, column: &[f64]) -> Vec<f64> {
     }
 }
 
-/// `pump.b.p in bar`, as a label of an axis.
+/// The label of an axis, such as `pump.b.p in bar`.
 pub fn axis_label(name: &str, signal: &Signal) -> String {
     match shown_unit(signal) {
         "" => name.to_owned(),
@@ -219,6 +237,9 @@ pub fn axis_label(name: &str, signal: &Signal) -> String {
     }
 }
 
+/// One panel with the given signals of all runs. `Err`: a run lacks the signal of the horizontal axis.
+///
+/// All signals belong to one group. The curves of all runs but the first are dashed.
 fn panel(runs: &[LabelledTrajectory<'_>], signals: &[&Signal], x: Option<&str>) -> Result<FigurePanel, String> {
     let mut panel =
         FigurePanel { x_label: "time in s".to_owned(), y_label: y_label(signals), ..FigurePanel::default() };
@@ -234,11 +255,13 @@ fn panel(runs: &[LabelledTrajectory<'_>], signals: &[&Signal], x: Option<&str>) 
             }
         };
         for (s, signal) in signals.iter().enumerate() {
+            // A signal may be missing in some of the runs.
             let Some(index) = run.trajectory.index(&signal.name) else { continue };
             panel.series.push(PlotSeries {
                 name: if runs.len() > 1 { format!("{} ({})", signal.name, run.label) } else { signal.name.clone() },
                 x: horizontal.clone(),
                 y: plotted(signal, &run.trajectory.columns[index]),
+                // A staircase needs time on the horizontal axis.
                 held: signal.kind.is_discrete() && x.is_none(),
                 colour: s * runs.len() + r,
                 dashed: r > 0,
@@ -249,7 +272,7 @@ fn panel(runs: &[LabelledTrajectory<'_>], signals: &[&Signal], x: Option<&str>) 
     Ok(panel)
 }
 
-/// Values as drawn: in the unit for people; literals from 0, where their words stand.
+/// Values as drawn: in the display unit, and literals of enumerations from 0, where their words are.
 fn plotted(signal: &Signal, column: &[f64]) -> Vec<f64> {
     match signal.kind {
         Kind::Enumeration(_) => column.iter().map(|v| v - 1.0).collect(),
@@ -257,6 +280,7 @@ fn plotted(signal: &Signal, column: &[f64]) -> Vec<f64> {
     }
 }
 
+/// The words of the vertical axis for Booleans and enumerations; empty for numbers.
 fn words(signal: &Signal) -> Vec<String> {
     match &signal.kind {
         Kind::Boolean => vec!["false".to_owned(), "true".to_owned()],
@@ -265,10 +289,11 @@ fn words(signal: &Signal) -> Vec<String> {
     }
 }
 
-/// The name of a single curve, the common last name of several, with the unit.
+/// The label of the vertical axis: the name of a single curve, or the common last name of several, with the unit.
 fn y_label(signals: &[&Signal]) -> String {
     let first = signals[0];
     if !words(first).is_empty() {
+        // The words at the axis say enough.
         return String::new();
     }
     let last = last_name(&first.name);

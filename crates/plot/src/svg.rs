@@ -49,6 +49,8 @@ impl PanelFrame {
 }
 
 /// Draws a figure. The picture is 900 wide, its height depends on the number of panels.
+///
+/// Panels are drawn first, because the total height follows from them. The title is put before them.
 pub fn write(figure: &Figure) -> String {
     let plots: Vec<PanelAxes<'_>> = figure.panels.iter().map(|p| PanelAxes::new(p, figure)).collect();
     // The widest tick text of all panels decides, so that all axes begin at the same place.
@@ -75,6 +77,8 @@ pub fn write(figure: &Figure) -> String {
 }
 
 /// The beginning of every picture: size, font size, title for screen readers, white background.
+///
+/// `text` is the font size. The caller appends the content and the closing tag.
 pub(super) fn begin(width: impl Display, height: impl Display, text: impl Display, title: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
@@ -85,6 +89,8 @@ pub(super) fn begin(width: impl Display, height: impl Display, text: impl Displa
 }
 
 /// Escapes the characters that have a meaning in XML. Control characters are dropped, as XML forbids most of them.
+///
+/// The result may be used as text and as the value of an attribute.
 pub fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -118,6 +124,8 @@ struct PanelAxes<'a> {
 
 impl<'a> PanelAxes<'a> {
     /// Chooses ranges, ticks and height of a panel.
+    ///
+    /// With a common horizontal axis, the range covers the curves of all panels.
     fn new(panel: &'a FigurePanel, figure: &Figure) -> Self {
         let own = panel.bounds().unwrap_or((0.0, 1.0, 0.0, 1.0));
         let shared = || figure.panels.iter().filter_map(FigurePanel::bounds).map(|b| (b.0, b.1));
@@ -126,7 +134,7 @@ impl<'a> PanelAxes<'a> {
         } else {
             (own.0, own.1)
         };
-        // Fewer panels get more height. A panel with words needs a line for each word.
+        // Fewer panels get more height. Among several, a panel with words needs a line for each word.
         let height = match (figure.panels.len(), panel.words.is_empty()) {
             (1, _) => 400.0,
             (2, true) => 240.0,
@@ -151,6 +159,9 @@ impl<'a> PanelAxes<'a> {
     }
 
     /// Draws the panel at height `y`. Returns where the next panel begins.
+    ///
+    /// `index` makes the name of the clipping area unique. `left` is the left edge of the axes in all panels. The
+    /// horizontal axis is labelled only when `with_x_label` is set.
     fn draw(&self, out: &mut String, index: usize, y: f64, left: f64, with_x_label: bool) -> f64 {
         let legend_height = self.legend(out, y, left);
         let frame = PanelFrame {
@@ -194,6 +205,8 @@ impl<'a> PanelAxes<'a> {
     }
 
     /// Draws the legend above the axes and returns its height.
+    ///
+    /// Each entry is a sample of the line and a name. Widths of names are estimated from their number of characters.
     fn legend(&self, out: &mut String, y: f64, left: f64) -> f64 {
         let mut x = left;
         let mut line = y + 14.0;
@@ -220,6 +233,9 @@ impl<'a> PanelAxes<'a> {
     }
 
     /// Draws grid, ticks, frame and labels.
+    ///
+    /// Without label of the horizontal axis the grid is drawn nevertheless, so that panels with a common axis can be
+    /// compared.
     fn axes(&self, out: &mut String, frame: &PanelFrame, with_x_label: bool) {
         let (l, t, w, h) = (frame.left, frame.top, frame.width, frame.height);
         let bottom = t + h;
@@ -269,6 +285,8 @@ impl<'a> PanelAxes<'a> {
 }
 
 /// Adds a power of ten to a label: `p in Pa` becomes `p in 1e6 Pa`.
+///
+/// A label without unit gets the power in brackets. With power 0 the label is unchanged.
 fn with_power(label: &str, power: i32) -> String {
     if power == 0 {
         return label.to_owned();
@@ -285,6 +303,8 @@ fn words(words: &[String]) -> AxisTicks {
 }
 
 /// The range with a margin of this share on both sides. It is never empty.
+///
+/// A range without width is widened by a tenth of its value, or to -1 to 1 around zero.
 fn widened(range: (f64, f64), part: f64) -> (f64, f64) {
     // The width of a larger range would overflow.
     let (low, high) = (range.0.max(-1e300), range.1.min(1e300));
@@ -313,6 +333,8 @@ fn cross(x: f64, y: f64) -> String {
 }
 
 /// Draws one curve, or the crosses of its points.
+///
+/// The name of the curve is its title, which viewers show under the pointer.
 fn curve(out: &mut String, series: &PlotSeries, frame: &PanelFrame) {
     // Crosses are not reduced: each one is a point of its own.
     if series.crosses {
@@ -343,6 +365,8 @@ fn curve(out: &mut String, series: &PlotSeries, frame: &PanelFrame) {
 }
 
 /// Path data through the points. A gap interrupts the line.
+///
+/// Points that are not finite are gaps.
 fn path(points: &[(f64, f64)], frame: &PanelFrame) -> String {
     let mut data = String::new();
     let mut pen = 'M';

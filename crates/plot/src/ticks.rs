@@ -10,6 +10,8 @@ pub(super) struct AxisTicks {
 }
 
 /// About `count` ticks at round numbers between `low` and `high`. An empty or infinite range has none.
+///
+/// The step is the next round number, so there may be fewer ticks.
 pub(super) fn ticks(low: f64, high: f64, count: usize) -> AxisTicks {
     let range = high - low;
     if !range.is_finite() || range <= 0.0 {

@@ -1,9 +1,14 @@
 //! The syntax tree of the full Modelica 3.6 grammar (specification, appendix A). It knows no semantics.
+//!
+//! The parser makes it, `print` writes it back as text, and the crates `model` and `editor` read it.
+//! Nodes own their children. Names are interned ([`Symbol`]); places are spans of bytes ([`Span`]).
+//! What the grammar allows in several notations is one node: a clause with several components becomes several
+//! [`Element`]s, sections of equations are joined, and brackets around an expression leave no trace but its span.
 
 use super::symbol::Symbol;
 use crate::diag::Span;
 
-/// A name at a place. Quoted identifiers keep their quotes.
+/// An identifier and its place. Quoted identifiers keep their quotes: `'a b'` and `a` are different names.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ident {
     /// The word.
@@ -15,46 +20,49 @@ pub struct Ident {
 /// A dotted name such as `Modelica.Units.SI.Pressure`, or `.Modelica` with a leading dot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {
-    /// True with a leading dot.
+    /// True with a leading dot: lookup then begins at the root, not in the enclosing classes.
     pub global: bool,
-    /// The parts, at least one.
+    /// The identifiers between the dots, at least one.
     pub parts: Vec<Ident>,
     /// The whole name.
     pub span: Span,
 }
 
 impl Path {
-    /// The parts joined by dots.
+    /// The identifiers joined by dots, without a leading dot.
     pub fn dotted(&self) -> String {
         self.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")
     }
 }
 
-/// One file: `within` and classes.
+/// One file: an optional `within` clause, and classes.
 #[derive(Clone, Debug, Default)]
 pub struct StoredDefinition {
-    /// `within A.B;`; a bare `within;` gives `None`.
+    /// The package that the classes belong to. `None` without the clause, and for a bare `within;`.
     pub within: Option<Path>,
-    /// Top-level classes, each with whether it is `final`.
+    /// The classes at the top level, in order. Their prefixes say whether each is `final`.
     pub classes: Vec<Class>,
 }
 
-/// The specialised class.
+/// The kind of a class: general, or specialised to some purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica keywords")]
 pub enum ClassKind {
     Class,
     Model,
     Block,
+    /// A `record`, or an `operator record` if `operator` is true.
     Record {
         operator: bool,
     },
+    /// A `connector`, or an `expandable connector` if `expandable` is true.
     Connector {
         expandable: bool,
     },
     Type,
     Package,
-    /// `purity` is `Some(true)` for `pure`, `Some(false)` for `impure`.
+    /// A `function`, or an `operator function` if `operator` is true.
+    /// `purity` is `Some(true)` for `pure`, `Some(false)` for `impure`, `None` without either word.
     Function {
         operator: bool,
         purity: Option<bool>,
@@ -63,7 +71,7 @@ pub enum ClassKind {
 }
 
 impl ClassKind {
-    /// The keywords without the purity of functions.
+    /// The keywords of the kind as messages quote them. The purity of functions is left out.
     pub fn word(self) -> &'static str {
         match self {
             ClassKind::Class => "class",
@@ -81,7 +89,7 @@ impl ClassKind {
     }
 }
 
-/// Prefixes of classes and components.
+/// The prefixes of classes and components, each true if it is written. Those that do not apply stay false.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica keywords")]
 pub struct ElementPrefixes {
@@ -94,59 +102,59 @@ pub struct ElementPrefixes {
     pub outer: bool,
 }
 
-/// A class definition.
+/// A class definition, in any of the forms of [`ClassBody`].
 #[derive(Clone, Debug)]
 pub struct Class {
     /// Its name.
     pub name: Ident,
-    /// model, function, ...
+    /// The kind: `model`, `function`, and so on.
     pub kind: ClassKind,
-    /// partial, replaceable, ...
+    /// `partial`, `replaceable`, `encapsulated`, and so on.
     pub prefixes: ElementPrefixes,
-    /// `constrainedby` of a replaceable class.
+    /// The `constrainedby` clause of a replaceable class.
     pub constraint: Option<ConstrainingClause>,
-    /// What it holds.
+    /// The part behind the name, without description and annotation.
     pub body: ClassBody,
     /// The description string.
     pub description: Option<Box<str>>,
-    /// `annotation(...)` of the class (also the one inside a long class).
+    /// The annotations of the class, merged. In a long class they stand inside the body.
     pub annotation: Option<Modification>,
     /// From the first prefix to the name after `end`.
     pub span: Span,
 }
 
-/// `constrainedby T(...)`.
+/// A clause `constrainedby T(...)`: what replaces the element must be a subtype of `T` (section 7.3.2).
 #[derive(Clone, Debug)]
 pub struct ConstrainingClause {
     /// The constraining type.
     pub path: Path,
-    /// Its modification.
+    /// The modification that every replacement gets too.
     pub modification: Option<Modification>,
 }
 
-/// The four forms of a class body.
+/// The forms of a class body.
 #[derive(Clone, Debug)]
 pub enum ClassBody {
-    /// `model A ... end A;`
+    /// With sections: `model A ... end A;`.
     Long(LongBody),
-    /// `type A = input B[3](...)`.
+    /// By a base class: `type A = input B[3](...)`.
     Short {
         /// `flow`, `input`, ... before the base.
         prefix: TypePrefix,
         /// The base class.
         base: Path,
-        /// Array dimensions.
+        /// Array dimensions, empty for a scalar.
         subscripts: Vec<Subscript>,
         /// Modification of the base.
         modification: Option<Modification>,
     },
-    /// `type E = enumeration(a, b "text")`; `None` for `enumeration(:)`.
+    /// `type E = enumeration(a, b "text")`. `None` for `enumeration(:)`, whose literals are left open.
     Enumeration(Option<Vec<EnumLiteral>>),
-    /// `function f = der(g, x, y)`.
+    /// The partial derivative of a function: `function f = der(g, x, y)` (section 12.7.2).
     Derivative {
         /// The function differentiated.
         function: Path,
-        /// The arguments it is differentiated by.
+        /// The inputs by which it is differentiated, one after the other.
         by: Vec<Ident>,
     },
 }
@@ -160,12 +168,13 @@ pub struct EnumLiteral {
     pub description: Option<Box<str>>,
 }
 
-/// A class body with sections.
+/// The body of a long class. The order of its sections is not kept, as it has no meaning.
 #[derive(Clone, Debug, Default)]
 pub struct LongBody {
-    /// `class extends X(...)`: the modification, when this is such a class.
+    /// `Some` for `model extends X(...)`, which changes the inherited class `X` (section 7.3.1).
+    /// The inner option is its modification.
     pub class_extends: Option<Option<Modification>>,
-    /// Elements of all sections in order.
+    /// Imports, base classes, nested classes and components, in the order of the text.
     pub elements: Vec<Element>,
     /// `equation` sections joined.
     pub equations: Vec<Equation>,
@@ -175,13 +184,13 @@ pub struct LongBody {
     pub algorithms: Vec<Vec<Statement>>,
     /// Each `initial algorithm` section on its own.
     pub initial_algorithms: Vec<Vec<Statement>>,
-    /// `external "C" ...` of a function.
+    /// The place of `external "C" ...;` in a function, without the semicolon.
     pub external: Option<Span>,
-    /// What stands between `external` and its semicolon, as written.
+    /// The text between `external` and its semicolon, as written.
     pub external_text: Option<Box<str>>,
 }
 
-/// An element of a class with its visibility.
+/// One element of a class, with its visibility and place.
 #[derive(Clone, Debug)]
 pub struct Element {
     /// True in a `protected` section.
@@ -201,41 +210,41 @@ pub enum ElementKind {
     Extends(ExtendsClause),
     /// A nested class.
     Class(Box<Class>),
-    /// A component clause with one component (a clause with several is split).
+    /// One component. A clause with several is split; they share prefixes and type.
     Component(Box<ComponentDeclaration>),
 }
 
-/// The forms of `import`.
+/// The forms of `import` (section 13.2.1).
 #[derive(Clone, Debug)]
 pub enum Import {
     /// `import A.B;` or `import C = A.B;`
     Single {
-        /// The name it goes by here.
+        /// The name by which it is known here. `None` for the last identifier of the path.
         alias: Option<Ident>,
         /// What is imported.
         path: Path,
     },
-    /// `import A.*;`
+    /// `import A.*;` makes all names of a package known.
     All(Path),
-    /// `import A.{b, c};`
+    /// `import A.{b, c};` makes some names of a package known.
     Some(Path, Vec<Ident>),
 }
 
-/// `extends B(mods, break c, break connect(a, b)) annotation(...)`.
+/// An `extends` clause: `extends B(mods, break c, break connect(a, b))`. Its annotation is not kept.
 #[derive(Clone, Debug)]
 pub struct ExtendsClause {
     /// The base class.
     pub base: Path,
-    /// Its modification.
+    /// The modification of what is inherited, deselections by `break` included.
     pub modification: Option<Modification>,
 }
 
-/// Variability and causality prefixes of a component or short class.
+/// The type prefixes of a component or short class.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TypePrefix {
-    /// `flow`
+    /// `flow`: connected variables sum to zero.
     pub flow: bool,
-    /// `stream`
+    /// `stream`: the value is carried by a flow in the same connector.
     pub stream: bool,
     /// `discrete`, `parameter`, `constant`
     pub variability: Option<VariabilityPrefix>,
@@ -243,7 +252,7 @@ pub struct TypePrefix {
     pub causality: Option<CausalityPrefix>,
 }
 
-/// Declared variability.
+/// The declared variability, from what never changes to what changes at events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the Modelica keywords")]
 pub enum VariabilityPrefix {
@@ -260,24 +269,24 @@ pub enum CausalityPrefix {
     Output,
 }
 
-/// One declared component.
+/// One declared component, for example `parameter Real x[2](min = 0) = {1, 2} if on "text"`.
 #[derive(Clone, Debug)]
 pub struct ComponentDeclaration {
     /// Its name.
     pub name: Ident,
-    /// inner, outer, replaceable, ...
+    /// `inner`, `outer`, `replaceable`, and so on.
     pub prefixes: ElementPrefixes,
-    /// flow, parameter, input, ...
+    /// `flow`, `parameter`, `input`, and so on.
     pub prefix: TypePrefix,
-    /// Its type.
+    /// The name of the type, without dimensions.
     pub class: Path,
-    /// Dimensions: those of the type (`Real[3] x`) after those of the name (`x[2]`): `Real[3] x[2]` is `[2, 3]`.
+    /// All dimensions: those of the name, then those of the type. `Real[3] x[2]` has `[2, 3]`.
     pub subscripts: Vec<Subscript>,
-    /// `(...) = value`
+    /// The modification, `(...) = value`.
     pub modification: Option<Modification>,
-    /// `if condition`
+    /// The condition after `if`: where it is false, the component does not exist.
     pub condition: Option<Expr>,
-    /// `constrainedby ...`
+    /// The `constrainedby` clause of a replaceable component.
     pub constraint: Option<ConstrainingClause>,
     /// The description string.
     pub description: Option<Box<str>>,
@@ -285,25 +294,25 @@ pub struct ComponentDeclaration {
     pub annotation: Option<Modification>,
 }
 
-/// `(arguments) = value`, `= value` or `:= value`.
+/// A modification: `(arguments) = value`, `= value` or `:= value` (section 7.2).
 #[derive(Clone, Debug, Default)]
 pub struct Modification {
-    /// What stands in brackets.
+    /// The arguments in brackets, in the order of the text. Empty without brackets.
     pub arguments: Vec<ModificationArgument>,
-    /// What stands after `=`.
+    /// The value after `=` or `:=`.
     pub value: Option<Expr>,
-    /// `break` as value (removes the binding, Modelica 3.6).
+    /// True for `= break`, which removes the binding that would be inherited. Then `value` is `None`.
     pub break_value: bool,
 }
 
 /// One argument of a modification.
 #[derive(Clone, Debug)]
 pub struct ModificationArgument {
-    /// `each`
+    /// `each`: one value for all elements of an array.
     pub each: bool,
-    /// `final`
+    /// `final`: no outer modification may change it.
     pub final_: bool,
-    /// What it does.
+    /// The element concerned, and the change.
     pub kind: ModificationArgumentKind,
     /// Where it stands.
     pub span: Span,
@@ -312,35 +321,35 @@ pub struct ModificationArgument {
 /// The kinds of arguments.
 #[derive(Clone, Debug)]
 pub enum ModificationArgumentKind {
-    /// `a.b(...) = value "text"`
+    /// A change of an element: `a.b(...) = value "text"`.
     Modify {
-        /// The element.
+        /// The element, which may lie several levels deeper.
         path: Path,
-        /// What is changed.
+        /// The change. `None` for a bare name such as `(x)`.
         modification: Option<Modification>,
         /// A description, if given.
         description: Option<Box<str>>,
     },
-    /// `redeclare T x(...)` or `replaceable T x`.
+    /// `redeclare T x(...)` or `replaceable T x`: another type for a component.
     Component(Box<ComponentDeclaration>),
-    /// `redeclare model M = N` and the like.
+    /// `redeclare model M = N` or the like: another class.
     Class(Box<Class>),
-    /// `break name` in `extends` (3.6).
+    /// `break name`: the inherited element is left out (section 7.4).
     BreakComponent(Ident),
-    /// `break connect(a, b)` in `extends` (3.6).
+    /// `break connect(a, b)`: the inherited connection is left out (section 7.4).
     BreakConnect(Box<Expr>, Box<Expr>),
 }
 
-/// One dimension or index.
+/// One dimension of a declaration, or one index of a reference.
 #[derive(Clone, Debug)]
 pub enum Subscript {
-    /// `:`
+    /// `:`: an open dimension, or all indices.
     All(Span),
-    /// An expression, possibly a range.
+    /// A size or an index, possibly a range.
     Expr(Expr),
 }
 
-/// An equation with its place.
+/// An equation of an `equation` or `initial equation` section, with its place.
 #[derive(Clone, Debug)]
 pub struct Equation {
     /// What it says.
@@ -351,43 +360,43 @@ pub struct Equation {
     pub span: Span,
 }
 
-/// The kinds of equations.
+/// The kinds of equations (section 8.3).
 #[derive(Clone, Debug)]
 pub enum EquationKind {
-    /// `a = b`
+    /// `a = b`. Neither side is assigned.
     Equal(Expr, Expr),
     /// `connect(a, b)`; both are component references.
     Connect(Expr, Expr),
-    /// `if c then ... elseif ... else ... end if`
+    /// `if c then ... elseif ... else ... end if`, of which one branch holds at a time.
     If {
-        /// Conditions with their equations.
+        /// Conditions in order, each with the equations that hold if it is the first true one.
         branches: Vec<(Expr, Vec<Equation>)>,
-        /// The equations after `else`.
+        /// The equations after `else`. Empty without `else`.
         otherwise: Vec<Equation>,
     },
-    /// `for i in 1:n, j loop ... end for`
+    /// `for i in 1:n, j loop ... end for`: the body for every combination of values.
     For {
         /// The iterators, outermost first.
         iterators: Vec<ForIndex>,
-        /// The body.
+        /// The equations of the loop.
         body: Vec<Equation>,
     },
-    /// `when c then ... elsewhen ... end when`
+    /// `when c then ... elsewhen ... end when`: equations that hold at the instants when a condition becomes true.
     When(Vec<(Expr, Vec<Equation>)>),
-    /// `f(...)`: assert, terminate, reinit, Connections.root, ...
+    /// A call whose outputs are not used: `assert`, `terminate`, `reinit`, `Connections.root`, and so on.
     Call(Expr),
 }
 
-/// One loop variable.
+/// One loop variable with its range.
 #[derive(Clone, Debug)]
 pub struct ForIndex {
     /// Its name.
     pub name: Ident,
-    /// Its range; `None` when deduced from the body.
+    /// The range. `None` if it is deduced from how the variable indexes arrays.
     pub range: Option<Expr>,
 }
 
-/// A statement with its place.
+/// A statement of an algorithm section or function, with its place. Its description is not kept.
 #[derive(Clone, Debug)]
 pub struct Statement {
     /// What it does.
@@ -396,36 +405,36 @@ pub struct Statement {
     pub span: Span,
 }
 
-/// The kinds of statements.
+/// The kinds of statements (section 11.2).
 #[derive(Clone, Debug)]
 pub enum StatementKind {
-    /// `a := b`
+    /// `a := b`.
     Assign(Expr, Expr),
-    /// `(a, , c) := f(x)`
+    /// `(a, , c) := f(x)`. `None` where an output is dropped.
     AssignTuple(Vec<Option<Expr>>, Expr),
-    /// `f(x)`
+    /// `f(x)`, a call whose outputs are not used.
     Call(Expr),
-    /// `if`
+    /// `if c then ... elseif ... else ... end if`.
     If {
-        /// Conditions with their statements.
+        /// Conditions in order, each with the statements that it guards.
         branches: Vec<(Expr, Vec<Statement>)>,
-        /// After `else`.
+        /// The statements after `else`. Empty without `else`.
         otherwise: Vec<Statement>,
     },
-    /// `for`
+    /// `for i in 1:n loop ... end for`.
     For {
         /// The iterators, outermost first.
         iterators: Vec<ForIndex>,
-        /// The body.
+        /// The statements of the loop.
         body: Vec<Statement>,
     },
-    /// `while`
+    /// `while c loop ... end while`.
     While(Expr, Vec<Statement>),
-    /// `when`
+    /// `when c then ... elsewhen ... end when`.
     When(Vec<(Expr, Vec<Statement>)>),
-    /// `break`
+    /// `break`, which leaves the innermost loop.
     Break,
-    /// `return`
+    /// `return`, which leaves the function.
     Return,
 }
 
@@ -439,7 +448,7 @@ pub struct Expr {
 }
 
 impl Expr {
-    /// The number, where it is written as one, with a sign or without.
+    /// The value of a literal number, with or without signs before it. `None` for anything else.
     pub fn as_number(&self) -> Option<f64> {
         match &self.kind {
             ExprKind::Real(x) => Some(*x),
@@ -452,9 +461,11 @@ impl Expr {
 }
 
 impl Expr {
-    /// Shows the expressions directly inside this one, in their order; not the ranges of iterators, which have a scope of
-    /// their own, nor indices in the name of a function.
+    /// Calls `see` for each expression directly inside this one, in the order of the text.
+    /// The ranges of iterators are left out, as they have a scope of their own; so are indices in the name of a
+    /// function.
     pub fn each_child<'a>(&'a self, see: &mut dyn FnMut(&'a Expr)) {
+        // `:` holds no expression.
         let indices = |subscripts: &'a [Subscript]| {
             subscripts.iter().filter_map(|s| match s {
                 Subscript::Expr(e) => Some(e),
@@ -495,81 +506,81 @@ impl Expr {
 /// The kinds of expressions.
 #[derive(Clone, Debug)]
 pub enum ExprKind {
-    /// A number written without `.` or exponent that fits in 64 bits.
+    /// A number without `.` and exponent that fits in 64 bits.
     Integer(i64),
-    /// A number.
+    /// Any other number. Infinite if it is too large, which is an error.
     Real(f64),
-    /// A string, escapes resolved.
+    /// A string without its quotation marks, escapes resolved.
     String(Box<str>),
     /// `true`, `false`
     Boolean(bool),
-    /// `a.b[i].c`
+    /// A name, possibly dotted and indexed: `a.b[i].c`. Constants, components and enumeration literals look alike here.
     Reference(ComponentReference),
-    /// `op a`
+    /// A sign or `not` before an operand.
     Unary(UnaryOp, Box<Expr>),
-    /// `a op b`
+    /// Two operands with an operator between them.
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     /// `if c then a elseif d then b else e`
     If {
-        /// Conditions with their values.
+        /// Conditions in order, each with the value if it is the first true one.
         branches: Vec<(Expr, Expr)>,
-        /// After `else`.
+        /// The value after `else`.
         otherwise: Box<Expr>,
     },
-    /// `from:to`, `from:step:to`
+    /// `from:to` or `from:step:to`, both ends included (section 10.4.3).
     Range {
         /// First value.
         from: Box<Expr>,
-        /// Step, 1 when absent.
+        /// The step. `None` stands for 1.
         step: Option<Box<Expr>>,
         /// Last value.
         to: Box<Expr>,
     },
-    /// `f(a, b, name = c)`; `der`, `initial` and `pure` too.
+    /// A call: `f(a, b, name = c)`. The keywords `der`, `initial` and `pure` are called in the same way.
     Call {
-        /// What is called.
+        /// The name of the function, operator or record.
         function: ComponentReference,
-        /// Positional arguments.
+        /// Positional arguments in order.
         args: Vec<Expr>,
-        /// Named arguments.
+        /// Named arguments in the order of the text, which follow the positional ones.
         named: Vec<(Ident, Expr)>,
     },
-    /// `f(expr for i in 1:n)` and `{expr for i in 1:n}` (then `function` is `None`).
+    /// A reduction, `f(expr for i in 1:n)`, or an array comprehension, `{expr for i in 1:n}`.
     Comprehension {
-        /// `sum`, `max`, ... or none for an array.
+        /// The function that reduces, such as `sum` or `max`. `None` for an array.
         function: Option<ComponentReference>,
-        /// The element.
+        /// The expression that is evaluated for every combination of the iterators.
         body: Box<Expr>,
         /// The iterators, outermost first.
         iterators: Vec<ForIndex>,
     },
-    /// `function f(x = 1)` as an argument.
+    /// A function with some inputs given, as an argument: `function f(x = 1)` (section 12.4.2.1).
     PartialApplication {
         /// The function.
         function: Path,
-        /// Bound arguments.
+        /// The inputs that are given.
         named: Vec<(Ident, Expr)>,
     },
-    /// `{a, b}`
+    /// An array with one more dimension than its elements: `{a, b}`.
     Array(Vec<Expr>),
-    /// `[a, b; c, d]`
+    /// A matrix by its rows, `[a, b; c, d]`. Elements may be arrays, which are concatenated (section 10.4.2).
     Matrix(Vec<Vec<Expr>>),
-    /// `(a, , c)`: a list of outputs; a single bracketed expression is not a tuple.
+    /// A list of outputs, `(a, , c)`. `None` where one is missing. A single expression in brackets is not a tuple.
     Tuple(Vec<Option<Expr>>),
-    /// `(a)[i]`: an index on a bracketed expression (Modelica 3.6).
+    /// An index on an expression in brackets, `(a)[i]` (new in Modelica 3.6).
     Index(Box<Expr>, Vec<Subscript>),
-    /// `end` inside a subscript.
+    /// `end` inside a subscript: the size of the dimension that is indexed.
     End,
-    /// Stands where the text could not be read.
+    /// Stands where no expression could be parsed; an error was reported.
     Error,
 }
 
-/// A component reference.
+/// A component reference such as `a.b[2].c`. It may also name a function or class.
 #[derive(Clone, Debug)]
 pub struct ComponentReference {
-    /// True with a leading dot.
+    /// True with a leading dot: lookup then begins at the root.
     pub global: bool,
-    /// The parts, at least one.
+    /// The names between the dots with their indices, at least one.
     pub parts: Vec<ReferencePart>,
     /// The whole reference.
     pub span: Span,
@@ -584,20 +595,20 @@ pub struct ReferencePart {
     pub subscripts: Vec<Subscript>,
 }
 
-/// Unary operators.
+/// The operators before an operand (section 3.4).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica operators")]
 pub enum UnaryOp {
     Plus,
     Minus,
-    /// `.+`
+    /// `.+`, the element-wise sign.
     ElementPlus,
-    /// `.-`
+    /// `.-`, the element-wise sign.
     ElementMinus,
     Not,
 }
 
-/// Binary operators.
+/// The operators between two operands (sections 3.4 and 3.5). `Element...` are the element-wise ones, such as `.*`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the Modelica operators")]
 pub enum BinaryOp {

@@ -1,22 +1,26 @@
-//! The one layout of a text: indentation, blanks, empty lines. Tokens, comments and the author's line breaks stay, so that
-//! the text means what it meant.
+//! The formatter: a text in, the same text in the standard layout out.
+//! The command `format` and the editor call [`format`].
+//!
+//! Only indentation, blanks and empty lines change. Tokens, comments and the author's line breaks stay, so the meaning
+//! stays. The layout follows from the tokens alone: [`BlockNesting`] counts levels without a syntax tree.
 
 use super::lexer::lex;
 use super::token::{Token, TokenKind};
 use crate::diag::{Diagnostic, FileId};
 
-/// Blanks of a level.
+/// Blanks of one level of indentation.
 const LEVEL: usize = 2;
 
-/// A text in the one layout.
+/// Lays out a text. The result ends with one line break, and formatting it again changes nothing.
 ///
 /// # Errors
-/// What the parser says of a text that it cannot read.
+/// The errors of the parser: a text with errors is not changed.
 pub fn format(file: FileId, text: &str) -> Result<String, Vec<Diagnostic>> {
     let parsed = super::parse(file, text);
     if !parsed.diagnostics.is_empty() {
         return Err(parsed.diagnostics);
     }
+    // If all lines end as on Windows, the text is laid out with plain line ends, which are replaced afterwards.
     let breaks = text.matches('\n').count();
     if breaks > 0 && text.matches("\r\n").count() == breaks {
         return with_line_ends(text, file);
@@ -35,27 +39,33 @@ pub fn format(file: FileId, text: &str) -> Result<String, Vec<Diagnostic>> {
     Ok(layout.out)
 }
 
-/// Lines of texts from Windows end as they did.
+/// Formats a text with line ends of Windows, which it keeps.
 fn with_line_ends(text: &str, file: FileId) -> Result<String, Vec<Diagnostic>> {
     Ok(format(file, &text.replace("\r\n", "\n"))?.replace('\n', "\r\n"))
 }
 
+/// The layout under construction.
 struct SourceFormatter<'a> {
+    /// The text to be laid out.
     text: &'a str,
+    /// Its tokens, `Eof` last.
     tokens: &'a [Token],
+    /// The text written so far.
     out: String,
+    /// The nesting at the current token.
     blocks: BlockNesting,
 }
 
-/// What stands between two tokens.
+/// A piece of what stands between two tokens.
 enum TokenGap<'a> {
-    /// So many line breaks.
+    /// Blanks with so many line breaks; 0 for blanks within a line.
     Lines(usize),
-    /// A comment, from its first sign to its last.
+    /// A comment from its first sign to its last, without the line break after it.
     Comment(&'a str),
 }
 
 impl SourceFormatter<'_> {
+    /// Writes what stands before token `i`, then the token itself.
     fn token(&mut self, i: usize) {
         let token = self.tokens[i];
         let before = i.checked_sub(1).map(|p| self.tokens[p]);
@@ -71,14 +81,16 @@ impl SourceFormatter<'_> {
             self.out.push(' ');
         }
         self.out.push_str(&self.text[token.start as usize..token.end as usize]);
+        // The nesting is updated after the token, whose own level has been used for its line.
         self.blocks.pass(self.tokens, i);
     }
 
-    /// Comments and line breaks before token `next`.
+    /// Writes the comments and line breaks between two tokens. `next` is the index of the second one.
     fn gaps(&mut self, start: usize, end: usize, next: usize) {
         for gap in gaps(&self.text[start..end]) {
             match gap {
                 TokenGap::Lines(count) if !self.out.is_empty() => self.break_lines(count),
+                // Empty lines at the beginning of the file are dropped.
                 TokenGap::Lines(_) => {}
                 TokenGap::Comment(comment) => {
                     if self.at_line_start() {
@@ -88,6 +100,7 @@ impl SourceFormatter<'_> {
                         self.out.push(' ');
                     }
                     self.out.push_str(comment.trim_end());
+                    // A comment in the middle of a line is followed by a blank; blanks before a line break would stay.
                     if comment.starts_with("/*") && !next_line(&self.text[start..end], comment) {
                         self.out.push(' ');
                     }
@@ -96,11 +109,12 @@ impl SourceFormatter<'_> {
         }
     }
 
+    /// True at the beginning of a line of the output.
     fn at_line_start(&self) -> bool {
         self.out.is_empty() || self.out.ends_with('\n')
     }
 
-    /// One line break, or two for an empty line between.
+    /// Ends the line. With two or more breaks in the text an empty line follows, never more than one.
     fn break_lines(&mut self, count: usize) {
         let kept = self.out.trim_end_matches(' ').len();
         self.out.truncate(kept);
@@ -108,10 +122,12 @@ impl SourceFormatter<'_> {
         (have..count.min(2)).for_each(|_| self.out.push('\n'));
     }
 
+    /// Writes the indentation of a level.
     fn indent(&mut self, level: usize) {
         self.out.extend(std::iter::repeat_n(' ', LEVEL * level));
     }
 
+    /// Ends the output with exactly one line break, or leaves it empty.
     fn finish(&mut self) {
         let kept = self.out.trim_end().len();
         self.out.truncate(kept);
@@ -121,13 +137,15 @@ impl SourceFormatter<'_> {
     }
 }
 
-/// Whether only blanks follow a comment on its line.
+/// True if only blanks follow a comment on its line.
+/// `comment` must be a slice of `gap`.
 fn next_line(gap: &str, comment: &str) -> bool {
+    // Its position follows from the addresses: both are slices of one text.
     let end = comment.as_ptr() as usize - gap.as_ptr() as usize + comment.len();
     gap[end..].trim_start_matches([' ', '\t', '\r']).starts_with('\n')
 }
 
-/// Takes the blanks between two tokens apart.
+/// Splits what stands between two tokens into comments and line breaks.
 fn gaps(text: &str) -> Vec<TokenGap<'_>> {
     let mut found = Vec::new();
     let mut rest = text;
@@ -152,36 +170,44 @@ fn gaps(text: &str) -> Vec<TokenGap<'_>> {
     found
 }
 
-/// Where in the nesting of classes, sections and blocks a token stands.
+/// The nesting of classes, sections and blocks at a token, by which lines are indented.
+/// The editor's outline uses it too.
 #[derive(Default)]
 pub struct BlockNesting {
-    /// Levels around statements.
+    /// Levels of classes and blocks around the current statement.
     pub depth: usize,
-    /// The lines in which the open brackets of the present statement stand: those of one line indent once.
+    /// For each open bracket of the current statement the number of its line.
+    /// Brackets opened on one line indent the lines after it once.
     brackets: Vec<u32>,
+    /// The number of the current line, counted in the output.
     line: u32,
-    /// The next token begins a statement.
+    /// True if the next token begins a statement.
     between: bool,
-    /// `if` expressions that wait for their `else`.
+    /// `if` expressions of the current statement that wait for their `else`: their `then` opens no block.
     open_ifs: usize,
-    /// What the present statement opens, and where the brackets were when it began.
+    /// What the current statement will open, if anything.
     opens: Option<BlockOpening>,
+    /// False before the first token, which always begins a statement.
     started: bool,
 }
 
+/// The kind of level that a statement opens, which decides where the level begins.
 #[derive(Clone, Copy, PartialEq)]
 enum BlockOpening {
-    /// `model M "text"`: the class's level begins after its name, modification and description.
+    /// A class such as `model M "text"`. Its level begins after its name, modification and description.
+    /// `header` is the index of the token of its name.
     Class { header: usize },
-    /// `if ... then`, `for ... loop`: the level begins after that word.
+    /// A block such as `if ... then` or `for ... loop`. Its level begins after that word.
     Block,
 }
 
 impl BlockNesting {
-    /// The level of a token that begins a line.
+    /// The level of a line that begins with the first token of `rest`.
     fn level_of(&self, rest: &[Token]) -> usize {
         let kind = rest[0].kind;
+        // Inside a statement: continuation lines are indented once, or once for each line that opened a bracket.
         if !self.is_between() {
+            // A closing bracket stands at the level of the line that opened it.
             let closing = matches!(kind, TokenKind::RightParen | TokenKind::RightBracket | TokenKind::RightBrace);
             let open = &self.brackets[..self.brackets.len() - usize::from(closing).min(self.brackets.len())];
             let lines = open.chunk_by(|a, b| a == b).count();
@@ -190,7 +216,8 @@ impl BlockNesting {
         self.depth - usize::from(self.closes_level(rest)).min(self.depth)
     }
 
-    /// The level of a comment that begins a line, by what follows: one before `end` or `else` belongs to what stands above.
+    /// The level of a comment that begins a line, by the token that follows.
+    /// A comment before `end` or `else` belongs to the items above and stands at their level.
     fn level_of_comment(&self, rest: &[Token]) -> usize {
         if self.is_between() && self.closes_level(rest) && !is_section(rest) && rest[0].kind != TokenKind::External {
             return self.depth;
@@ -198,17 +225,18 @@ impl BlockNesting {
         self.level_of(rest)
     }
 
-    /// Whether the next token begins a statement.
+    /// True if the next token begins a statement.
     pub fn is_between(&self) -> bool {
         self.between || !self.started
     }
 
+    /// True if the line stands one level further out than the statements before it: `end`, `else`, section keywords.
     fn closes_level(&self, rest: &[Token]) -> bool {
         use TokenKind as T;
         matches!(rest[0].kind, T::End | T::Else | T::Elseif | T::Elsewhen | T::External) || is_section(rest)
     }
 
-    /// Goes past a token.
+    /// Updates the nesting by token `i`.
     pub fn pass(&mut self, tokens: &[Token], i: usize) {
         let (kind, begins) = (tokens[i].kind, self.is_between());
         self.started = true;
@@ -229,6 +257,7 @@ impl BlockNesting {
             }
             _ => {}
         }
+        // The header of a class has no closing word: it ends before the first token that cannot belong to it.
         if let Some(BlockOpening::Class { header }) = self.opens
             && i >= header
             && self.brackets.is_empty()
@@ -239,14 +268,16 @@ impl BlockNesting {
         }
     }
 
+    /// Ends the current statement.
     fn next_statement(&mut self) {
         (self.between, self.open_ifs, self.opens) = (true, 0, None);
     }
 
-    /// At the first token of a statement.
+    /// Handles the first token of a statement.
     fn begin(&mut self, tokens: &[Token], i: usize) {
         self.between = false;
         match tokens[i].kind {
+            // A section keyword stands alone; the statement begins after it.
             _ if is_section(&tokens[i..]) => self.between = true,
             TokenKind::End => self.depth = self.depth.saturating_sub(1),
             TokenKind::Else => self.between = true,
@@ -257,13 +288,15 @@ impl BlockNesting {
             TokenKind::If | TokenKind::For | TokenKind::When | TokenKind::While => {
                 self.opens = Some(BlockOpening::Block)
             }
+            // Prefixes such as `partial` may be followed by the keyword of a class.
             kind if kind.is_element_prefix() => self.between = true,
             kind if kind.is_class_word() => self.begin_class(tokens, i),
             _ => {}
         }
     }
 
-    /// `model M`, `operator record R`, `class extends M(...)`, but not `type T = Real`.
+    /// The head of a class that has a body: `model M`, `operator record R`, `class extends M(...)`.
+    /// A short class such as `type T = Real` opens no level.
     fn begin_class(&mut self, tokens: &[Token], i: usize) {
         let mut at = i + 1;
         while tokens[at].kind.is_class_word() || tokens[at].kind == TokenKind::Extends {
@@ -276,11 +309,12 @@ impl BlockNesting {
     }
 }
 
-/// Whether a token after the name of a class still belongs to its header.
+/// True for a token after the name of a class that still belongs to its header: a description or a modification.
 fn continues_header(kind: TokenKind) -> bool {
     matches!(kind, TokenKind::String | TokenKind::Plus | TokenKind::LeftParen)
 }
 
+/// True at the keyword of a section: `equation`, `initial algorithm`, `protected` and so on.
 fn is_section(rest: &[Token]) -> bool {
     match rest[0].kind {
         TokenKind::Equation | TokenKind::Algorithm | TokenKind::Protected | TokenKind::Public => true,
@@ -289,10 +323,12 @@ fn is_section(rest: &[Token]) -> bool {
     }
 }
 
-/// Whether a blank stands between the token before and token `i`.
+/// True if a blank stands between token `i` and the one before it, whose kind is `before`.
 fn needs_blank(tokens: &[Token], i: usize, before: TokenKind) -> bool {
     use TokenKind as T;
     let kind = tokens[i].kind;
+    // Blanks around `+` and `-` show the terms of a sum; products and powers have none. A unary sign touches its
+    // operand.
     let before_is_sign = matches!(before, T::Plus | T::Minus | T::DotPlus | T::DotMinus);
     match (before, kind) {
         (_, T::Comma | T::Semicolon | T::RightParen | T::RightBracket | T::RightBrace) => false,
@@ -310,11 +346,12 @@ fn needs_blank(tokens: &[Token], i: usize, before: TokenKind) -> bool {
     }
 }
 
+/// True for a token that may begin an operand, so that a `.*` before it is an operator and not part of an import.
 fn begins_operand(kind: TokenKind) -> bool {
     !matches!(kind, TokenKind::Semicolon | TokenKind::String | TokenKind::Annotation | TokenKind::Eof)
 }
 
-/// Whether a sign stands before an operand, with nothing on its left.
+/// True if the sign at `i` has no operand on its left.
 fn is_unary(tokens: &[Token], i: usize) -> bool {
     let Some(before) = i.checked_sub(1).map(|p| tokens[p].kind) else { return true };
     let operand = matches!(
@@ -333,7 +370,7 @@ fn is_unary(tokens: &[Token], i: usize) -> bool {
     !operand
 }
 
-/// Whether a bracket after this token is that of a call or a modification.
+/// True if an opening bracket after this token belongs to a call or a modification, and touches it.
 fn is_applied(before: TokenKind) -> bool {
     use TokenKind as T;
     matches!(

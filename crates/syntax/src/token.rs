@@ -1,8 +1,11 @@
-//! The words and signs of Modelica.
+//! Tokens: the words and signs of Modelica (specification, section 2.3.3 and appendix A.1).
+//! One macro makes the kinds, their spellings and the keyword table from one list.
+//! Some signs are those of other languages (`&&`, `!=`, `**`): the parser recognises them to say what to write instead.
 
+// Makes the kinds of tokens. The keywords must be in alphabetical order, by which `word_kind` finds them.
 macro_rules! tokens {
     (keywords { $($keyword:ident $word:literal)* } signs { $($sign:ident $text:literal)* }) => {
-        /// What a token is.
+        /// The kind of a token: a class of words (names, numbers, strings), one keyword or one sign.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum TokenKind {
@@ -14,7 +17,7 @@ macro_rules! tokens {
             Real,
             /// A string, quotation marks included.
             String,
-            /// A character that Modelica does not use.
+            /// A character that begins no token of Modelica.
             Unknown,
             /// The end of the text.
             Eof,
@@ -26,7 +29,7 @@ macro_rules! tokens {
         const KEYWORDS: &[(&str, TokenKind)] = &[$(($word, TokenKind::$keyword),)*];
 
         impl TokenKind {
-            /// How it is written, if always the same way.
+            /// The text of the token, if it is always the same. `None` for names, numbers, strings and the like.
             pub fn spelling(self) -> Option<&'static str> {
                 match self {
                     $(TokenKind::$keyword => Some($word),)*
@@ -35,12 +38,12 @@ macro_rules! tokens {
                 }
             }
 
-            /// True for reserved words.
+            /// True for reserved words, which cannot be names.
             pub fn is_keyword(self) -> bool {
                 matches!(self, $(TokenKind::$keyword)|*)
             }
 
-            /// True for words that say what kind of class follows.
+            /// True for the main keyword of a class, such as `model`.
             pub fn is_class_word(self) -> bool {
                 use TokenKind as T;
                 matches!(
@@ -50,7 +53,7 @@ macro_rules! tokens {
                 )
             }
 
-            /// True for words before the one that says what an element is.
+            /// True for prefixes that may stand before the keyword of a class or the type of a component.
             pub fn is_element_prefix(self) -> bool {
                 use TokenKind as T;
                 matches!(
@@ -86,7 +89,8 @@ tokens! {
     }
 }
 
-/// For each letter the index of its first keyword, and one past the last in the end.
+/// For each letter the index of the first keyword that begins with it, and one past the last keyword at the end.
+/// The keywords of letter `i` are those from `FIRST[i]` to `FIRST[i + 1]`.
 const FIRST: [u8; 27] = {
     let mut first = [0; 27];
     let mut letter = 0;
@@ -101,8 +105,9 @@ const FIRST: [u8; 27] = {
     first
 };
 
-/// The keyword that a word is, or `Ident`.
+/// The keyword that a word is, or `Ident`. A search among the keywords of one letter is short.
 pub fn word_kind(word: &str) -> TokenKind {
+    // All keywords begin with a small letter.
     let letter = match word.as_bytes().first() {
         Some(b @ b'a'..=b'z') => usize::from(b - b'a'),
         _ => return TokenKind::Ident,
@@ -111,7 +116,7 @@ pub fn word_kind(word: &str) -> TokenKind {
     candidates.iter().find(|(keyword, _)| *keyword == word).map_or(TokenKind::Ident, |&(_, kind)| kind)
 }
 
-/// A token with the bytes it covers.
+/// A token: its kind, and the bytes of the text that it covers.
 #[derive(Clone, Copy, Debug)]
 pub struct Token {
     /// What it is.

@@ -81,6 +81,7 @@ type LspAnswer = Result<Value, String>;
 // Read from JSON, so the names are those of the request.
 #[derive(Deserialize)]
 struct NetworkParams {
+    /// URI of the file.
     uri: Uri,
     /// The class to draw; `None` for the first of the file that can run.
     model: Option<String>,
@@ -152,12 +153,16 @@ impl LspWorkspace {
     }
 
     /// Calls `act` with a view of a file. `None`: the URI is no file, or the file cannot be read.
+    ///
+    /// The file and the classes it needs are read and parsed anew for each call.
     fn look<T>(&self, uri: &Uri, act: impl FnOnce(&mut DocumentView<'_, '_>) -> T) -> Option<T> {
         let path = self.cache.path(uri)?;
         texts(&self.open, &self.libraries).look(&path, |mut view| act(&mut view))
     }
 
     /// Answers about a position; null when `act` finds nothing there.
+    ///
+    /// `params` has the file and the position. `Err`: they do not fit the protocol.
     fn at_place<T: serde::Serialize>(
         &self,
         params: &Value,
@@ -217,6 +222,8 @@ impl LspWorkspace {
     }
 
     /// The user's files: those of the editor's folders, those that are open, and that of the request.
+    ///
+    /// Files that ship with bramah are left out. The list is sorted and has each file once.
     fn own_files(&self, uri: &Uri) -> Vec<PathBuf> {
         // Copies of the text in build output and Node packages must not be renamed with the original.
         let skipped = |name: &str| name == "target" || name == "node_modules";
@@ -261,6 +268,8 @@ impl LspWorkspace {
     }
 
     /// Answers with the edits that rename a declaration. `Err` says why it cannot be renamed.
+    ///
+    /// The declaration must be in a file of the user, and the new name a free identifier.
     fn rename(&self, params: &Value) -> LspAnswer {
         let p: lsp_types::RenameParams = read(params)?;
         if !navigate::is_name(&p.new_name) {
@@ -300,6 +309,8 @@ impl LspWorkspace {
 
     /// Builds the answer to a renaming. `file` is the path and the new name when the class has a file of its own, which
     /// is then renamed too.
+    ///
+    /// A `package.mo` stands for its folder, which gets the new name.
     fn workspace_edit(
         &self,
         edits: BTreeMap<PathBuf, Vec<TextEdit>>,
@@ -349,6 +360,8 @@ impl LspWorkspace {
     }
 
     /// Answers with the quick fixes of diagnostics that touch the range.
+    ///
+    /// They come from the published diagnostics, so nothing is compiled for the answer.
     fn actions(&self, params: &Value, said: &BTreeMap<PathBuf, Vec<FileDiagnostic>>) -> LspAnswer {
         let p: CodeActionParams = read(params)?;
         let path = self.cache.path(&p.text_document.uri).ok_or("the address is not that of a file")?;
@@ -371,6 +384,8 @@ impl LspWorkspace {
     }
 
     /// Answers with the network of a model as SVG, even when ports are still open.
+    ///
+    /// The compiler reads the open texts, also those that are not saved.
     ///
     /// `Err`: the file has no model that can be drawn.
     fn network(&self, params: &Value) -> LspAnswer {

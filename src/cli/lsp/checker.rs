@@ -39,8 +39,9 @@ pub(super) struct BackgroundChecker {
 
 /// One file to check.
 struct CheckJob {
-    // The texts are shared, so a job costs little memory.
+    /// The file.
     path: PathBuf,
+    /// All open texts at the time of the job. They are shared with the main thread, so a job costs little memory.
     open: OpenTexts,
     /// Compared with the newest number of the file.
     number: u64,

@@ -45,10 +45,12 @@ impl OpenTexts {
 }
 
 impl World for OpenTexts {
+    /// The text of an open file, else that on the disk.
     fn read(&self, path: &Path) -> Result<String, String> {
         self.get(path).map_or_else(|| DiskWorld.read(path), |text| Ok(text.to_owned()))
     }
 
+    /// The entries of a folder on the disk.
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
         // Files that are open but not yet saved are not listed.
         DiskWorld.list(path)

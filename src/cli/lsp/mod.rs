@@ -134,6 +134,8 @@ impl LanguageServer<'_> {
     }
 
     /// Handles a notification: texts opened, changed, closed or saved. Others are ignored.
+    ///
+    /// A notification with parameters that do not fit is ignored, since it cannot be answered.
     fn notice(&mut self, notification: &Notification) {
         match notification.method.as_str() {
             notification::DidOpenTextDocument::METHOD => {
@@ -174,6 +176,8 @@ impl LanguageServer<'_> {
     }
 
     /// Publishes syntax errors at once; without any, asks the checker to compile the file.
+    ///
+    /// A text with syntax errors is not compiled: errors of later stages would only follow from them.
     fn check(&mut self, path: &Path) {
         // The user cannot change files that ship, so they are not checked.
         if bramah_editor::is_shipped(path) {
@@ -190,6 +194,8 @@ impl LanguageServer<'_> {
     }
 
     /// Takes a result of the checker.
+    ///
+    /// Diagnostics of an outdated text are dropped; a newer check is on its way.
     fn learn(&mut self, checked: CheckResult) {
         // Values of parameters are useful even when the text has changed since.
         self.answers.facts = checked.facts;

@@ -30,7 +30,9 @@ const DIGITS: usize = 9;
 struct CircuitDescription {
     /// File or package in the folder; empty for a model that ships.
     source: String,
+    /// Full name of the class.
     class: String,
+    /// Description of the class; may be empty.
     description: String,
     /// The network as SVG.
     picture: String,
@@ -40,25 +42,31 @@ struct CircuitDescription {
     start: f64,
     /// Stop time of the run in seconds.
     stop: f64,
+    /// Parameters with their values.
     parameters: Vec<ParameterDescription>,
+    /// Variables that can be drawn.
     variables: Vec<VariableDescription>,
+    /// Top-level inputs, which need a value for a run.
     inputs: Vec<VariableDescription>,
 }
 
 /// A variable as the page shows it.
 #[derive(Serialize)]
 struct VariableDescription {
-    /// Unit of the values in the model.
+    /// Full name, such as `pump.V`.
     name: String,
-    /// Unit in which the page shows values.
+    /// Unit of the values in the model.
     unit: String,
+    /// Unit in which the page shows values.
     shown_unit: String,
+    /// Description in the declaration; may be empty.
     description: String,
 }
 
 /// A parameter that the page can change.
 #[derive(Serialize)]
 struct ParameterDescription {
+    /// Name, units and description. In the JSON they are fields of the parameter itself.
     #[serde(flatten)]
     named: VariableDescription,
     /// `real`, `integer`, `boolean` or `enumeration`.
@@ -80,6 +88,8 @@ struct ParameterDescription {
 }
 
 /// Compiles a circuit and describes it as JSON.
+///
+/// The request names the circuit by `source` and `class`.
 ///
 /// A circuit with errors gives status 422 with the messages, and its network when the components could be read.
 pub(super) fn open(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpResponse, HttpRefusal> {
@@ -152,21 +162,22 @@ fn offered(parameter: &Parameter) -> ParameterDescription {
 #[derive(Deserialize)]
 struct SimulationRequest {
     // A missing field takes its default, so the page sends only what the user has set.
-    #[serde(default)]
     /// File or package in the folder; empty for a model that ships.
+    #[serde(default)]
     source: String,
+    /// The class to run.
     class: String,
-    #[serde(default)]
     /// Values of parameters as text, by name.
+    #[serde(default)]
     set: std::collections::BTreeMap<String, String>,
-    #[serde(default)]
     /// Stop time in seconds or with a unit; empty for that of the model.
+    #[serde(default)]
     stop: String,
-    #[serde(default)]
     /// Patterns of variables to draw; empty for the usual choice.
-    variables: Vec<String>,
     #[serde(default)]
+    variables: Vec<String>,
     /// `engineering` shows bar, l/min and the like; anything else the units of the model.
+    #[serde(default)]
     units: String,
 }
 
@@ -185,6 +196,8 @@ pub(super) fn run(folder: &ServerFolder, ask: &HttpRequest, jobs: &ServerJobs) -
 }
 
 /// The job: compiles, runs and draws. `Err` is the text that the page shows.
+///
+/// The number of variables that were not drawn and a summary of the run are appended to the messages.
 fn simulated(
     request: &Request,
     wanted: &SimulationRequest,
@@ -197,8 +210,8 @@ fn simulated(
     if let Some(stop) = stop {
         simulation.stop_time(stop);
     }
-    // Both checks precede the run, which may take long.
     let patterns = GlobPatterns::new(&wanted.variables);
+    // Both checks precede the run, which may take long.
     all_given(&simulation)?;
     record(&mut simulation, &patterns)?;
     let (start, length) = (

@@ -168,8 +168,8 @@ fn shipped() -> Vec<CircuitListing> {
 
 /// Files found in the folder, by purpose; relative paths.
 #[derive(Default)]
-/// Circuit files and packages.
 struct FolderFiles {
+    /// Circuit files and packages.
     circuits: Vec<String>,
     /// Study files.
     studies: Vec<String>,

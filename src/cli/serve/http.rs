@@ -56,13 +56,14 @@ impl HttpRequest {
 }
 
 /// An answer of the server.
-/// HTTP status.
 pub(super) struct HttpResponse {
+    /// HTTP status.
     status: u16,
     /// Content type.
     kind: &'static str,
     /// Content security policy.
     policy: &'static str,
+    /// Content.
     body: String,
 }
 
@@ -127,6 +128,7 @@ impl HttpRefusal {
 }
 
 impl From<super::CommandFailure> for HttpRefusal {
+    /// A failure of a function shared with the command line becomes a refusal with status 422.
     fn from(failure: super::CommandFailure) -> Self {
         HttpRefusal::of(&failure.diagnostics, &Sources::default())
     }
@@ -135,6 +137,7 @@ impl From<super::CommandFailure> for HttpRefusal {
 /// The JSON body of a refusal.
 #[derive(Serialize)]
 struct RefusalBody<'a> {
+    /// Text for the user.
     messages: &'a str,
 }
 

@@ -24,8 +24,8 @@ const KEPT: usize = 40;
 
 /// All running jobs and the last finished ones.
 #[derive(Default)]
-/// Jobs by number. Numbers grow with time.
 pub(super) struct ServerJobs {
+    /// Jobs by number. Numbers grow with time.
     all: Mutex<BTreeMap<u64, Arc<ServerJob>>>,
     /// The number of the next job.
     next: AtomicU64,
@@ -87,21 +87,28 @@ pub(super) struct DownloadFile {
 #[derive(Serialize)]
 // Borrows from a copy of the state, so that nothing is copied twice.
 struct JobStatus<'a> {
+    /// Number of the job.
     id: u64,
     /// `running`, `done`, `stopped` or `failed`.
     state: &'static str,
+    /// What the job does now, in words.
     stage: &'a str,
+    /// Share of the work done, 0 to 1; null when it is not known.
     share: Option<f64>,
     /// Since the start, or the total when the job has ended.
     seconds: f64,
+    /// Warnings and a summary, or why the job failed.
     messages: &'a str,
+    /// The result as an HTML page; empty until the job has ended well.
     page: &'a str,
+    /// Files offered for download.
     files: &'a [DownloadFile],
 }
 
 /// The JSON body of a request to stop a job.
 #[derive(Deserialize)]
 struct JobNumber {
+    /// Number of the job.
     id: u64,
 }
 

@@ -62,8 +62,8 @@ pub(super) struct ServeArgs {
 static PAGE: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/src/cli/serve/page");
 
 /// What all worker threads share. Its parts have their own locks.
-/// The served folder.
 struct ServerState {
+    /// The served folder.
     folder: ServerFolder,
     /// The port that the server listens on; `guard` compares the `Host` header with it.
     port: u16,
@@ -128,8 +128,8 @@ fn listen(port: Option<u16>) -> Result<Server, CommandFailure> {
 
 /// Opens an address in the browser. A failure is ignored, since the address is also printed.
 fn open(address: &str) {
-    // Output of the browser must not mix with that of the server.
     let program = if cfg!(target_os = "macos") { "open" } else { "xdg-open" };
+    // Output of the browser must not mix with that of the server.
     let _ = Command::new(program).arg(address).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
 }
 

@@ -39,6 +39,7 @@ pub(super) struct UploadStore {
 /// Summary of a recording: the JSON answer to an upload.
 #[derive(Serialize)]
 struct RecordingColumns {
+    /// File name.
     name: String,
     /// Number of rows.
     rows: usize,
@@ -55,8 +56,9 @@ struct RecordingColumns {
 /// A column of a recording.
 #[derive(Serialize)]
 struct RecordingColumn {
-    /// As the file states it; empty when it does not.
+    /// Name without the unit.
     name: String,
+    /// Unit as the file states it; empty when it does not.
     unit: String,
 }
 
@@ -125,28 +127,38 @@ pub(super) fn text(folder: &ServerFolder, ask: &HttpRequest) -> Result<HttpRespo
 struct StudyText {
     /// The study as TOML text.
     text: String,
-    #[serde(default)]
     /// Folder to which the paths of the study are relative.
+    #[serde(default)]
     folder: String,
 }
 
 /// A study in the form that the page edits. Optional values are texts, empty when they are missing.
 #[derive(Serialize)]
 struct StudyForm {
+    /// File or package of the model, relative to the study.
     model: String,
+    /// Class of the model; empty for the one that can run.
     class: String,
+    /// Inputs that columns drive.
     inputs: Vec<InputForm>,
+    /// Recorded signals.
     signals: Vec<SignalForm>,
+    /// Recordings.
     recordings: Vec<RecordingForm>,
+    /// Parameters with what is known about them.
     parameters: Vec<ParameterForm>,
+    /// Which effects the diagnosis considers.
     effects: EffectsForm,
 }
 
 /// An input that a column drives.
 #[derive(Serialize)]
 struct InputForm {
+    /// Name of the model's input.
     name: String,
+    /// Name of the column.
     column: String,
+    /// Unit of the column; empty when the study does not state it.
     unit: String,
     /// Samples are held until the next one; otherwise joined by straight lines.
     hold: bool,
@@ -157,19 +169,26 @@ struct InputForm {
 /// A recorded signal with the variable it belongs to.
 #[derive(Serialize)]
 struct SignalForm {
+    /// Name of the signal in the study.
     name: String,
+    /// Variable of the model.
     variable: String,
+    /// Name of the column.
     column: String,
+    /// Unit of the column; empty when the study does not state it.
     unit: String,
     /// 1 or -1: the column may have the opposite sign.
     sign: f64,
+    /// Range of the sensor.
     full_scale: String,
+    /// One standard deviation of the sensor, absolute or relative to its range.
     accuracy: String,
 }
 
 /// A recording of the study.
 #[derive(Serialize)]
 struct RecordingForm {
+    /// File name as the study writes it.
     file: String,
     /// `train` or `held`.
     role: &'static str,
@@ -179,26 +198,35 @@ struct RecordingForm {
     window: Option<(f64, f64)>,
     /// The file may be missing.
     optional: bool,
+    /// Number of pieces for multiple shooting; 1 when the recording is not cut.
     pieces: usize,
 }
 
 /// A parameter of the study.
 #[derive(Serialize)]
 struct ParameterForm {
+    /// Full name in the model.
     name: String,
     /// `exact` for a value that is taken as known, else empty.
     entry: &'static str,
+    /// One standard deviation of the data sheet, relative or absolute.
     sigma: String,
+    /// Lower limit.
     min: String,
+    /// Upper limit.
     max: String,
 }
 
 /// Which effects the diagnosis considers, and where.
 #[derive(Serialize)]
 struct EffectsForm {
+    /// Effects to consider; empty for all.
     include: Vec<String>,
+    /// Effects to leave out.
     exclude: Vec<String>,
+    /// Places to consider; empty for all.
     places: Vec<String>,
+    /// Folder with effects of the user; empty for none.
     folder: String,
 }
 
@@ -284,6 +312,8 @@ fn parsed(folder: &ServerFolder, given: &StudyText, sources: &mut Sources) -> Re
 }
 
 /// Starts a job that simulates along the recordings and draws model and recordings together.
+///
+/// The result is a page with one panel for each signal. Nothing is fitted but the initial state.
 pub(super) fn compare(
     folder: &ServerFolder,
     ask: &HttpRequest,
@@ -299,6 +329,8 @@ pub(super) fn compare(
 }
 
 /// Starts a job that diagnoses where model and recordings differ. The result has a report and files for download.
+///
+/// The search has its usual budget of time. The user can stop the job earlier.
 pub(super) fn diagnose(
     folder: &ServerFolder,
     ask: &HttpRequest,
@@ -402,8 +434,8 @@ struct SaveRequest {
     file: String,
     /// The study as TOML text.
     text: String,
-    #[serde(default)]
     /// Overwrite files that have other content.
+    #[serde(default)]
     replace: bool,
 }
 

@@ -1,6 +1,6 @@
-//! Loading a compiled wrapper, and all `unsafe` that calling it needs.
+//! Loads a compiled wrapper of C code, and holds all `unsafe` that calling it needs.
 //!
-//! What a user's C code does cannot be guarded: one that writes where it should not can bring the whole process down.
+//! Faults of the C code cannot be contained: code that writes to a wrong address can bring the process down.
 
 #![allow(unsafe_code, reason = "calls functions of C by the names that the wrapper gives them")]
 
@@ -8,12 +8,14 @@ use bramah_syntax::world::CompiledC;
 use libloading::Library;
 use std::ffi::{CStr, c_char, c_int};
 
-/// The functions of a wrapper, as long as its library is loaded.
+/// The functions of a wrapper. They are valid as long as the library is loaded, which this owns.
 #[derive(Debug)]
 pub struct WrapperLibrary {
+    /// `bramah_call`: reads inputs, writes outputs, and gives 0 unless the code reported an error.
     call: unsafe extern "C" fn(*const f64, *mut f64) -> c_int,
+    /// `bramah_trouble`: the text of the last error.
     trouble: unsafe extern "C" fn() -> *const c_char,
-    // dropped after the pointers into it
+    // Fields are dropped in order: the library after the pointers into it, its file after the library.
     _library: Library,
     _compiled: CompiledC,
 }
@@ -22,7 +24,7 @@ impl WrapperLibrary {
     /// Loads the library.
     ///
     /// # Errors
-    /// Why it cannot be loaded, as the system says it: often a symbol that is missing.
+    /// The message of the system, often about a missing symbol.
     pub fn load(compiled: CompiledC) -> Result<Self, String> {
         // SAFETY: the user asked for this code to be run; the types are those that the wrapper is written with
         unsafe {
@@ -33,10 +35,11 @@ impl WrapperLibrary {
         }
     }
 
-    /// Calls the function; `found` must be as long as the wrapper's outputs.
+    /// Calls the function. `args` and `found` must be as long as the inputs and outputs that the wrapper was written
+    /// for.
     ///
     /// # Errors
-    /// What the code gave to `ModelicaError`.
+    /// The text that the code passed to `ModelicaError`.
     pub fn call(&mut self, args: &[f64], found: &mut [f64]) -> Result<(), String> {
         // SAFETY: the lengths are those that the wrapper was written for; `&mut self` keeps other threads out
         unsafe {

@@ -32,31 +32,33 @@ pub(super) const SYMBOL: f64 = 40.0;
 /// The side of a box on which a port is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum BoxSide {
+    /// Connections leave to the left.
     Left,
+    /// Connections leave to the right.
     Right,
 }
 
 /// A place where a connection ends.
 #[derive(Clone, Copy, Debug)]
-/// Horizontal coordinate.
 pub(super) struct WireEnd {
-    /// Vertical coordinate.
+    /// Horizontal coordinate.
     pub x: f64,
-    /// The side of the box, in whose direction the connection leaves.
+    /// Vertical coordinate.
     pub y: f64,
+    /// The side of the box, in whose direction the connection leaves.
     pub side: BoxSide,
 }
 
 /// The box of a component.
 #[derive(Clone, Debug, Default)]
-/// Left edge.
 pub(super) struct LayoutBox {
-    /// Upper edge.
+    /// Left edge.
     pub x: f64,
-    /// Width of the box.
+    /// Upper edge.
     pub y: f64,
-    /// Height of the box.
+    /// Width of the box.
     pub width: f64,
+    /// Height of the box.
     pub height: f64,
     /// Symbol between the ports; `None` for classes without one.
     pub symbol: Option<&'static str>,
@@ -87,6 +89,8 @@ pub(super) struct DiagramLayout {
 
 impl DiagramLayout {
     /// Places all boxes of a network.
+    ///
+    /// Each connected part is laid out alone, from top to bottom.
     pub fn new(graph: &ComponentGraph) -> Self {
         let neighbours = neighbours(graph);
         let mut layout =
@@ -117,6 +121,8 @@ impl DiagramLayout {
     }
 
     /// The place of a port for a connection to the box `other`. A port with connections on both sides is drawn on both.
+    ///
+    /// The side that faces the other box is preferred. A port that is not drawn gives the corner of the box.
     pub fn end(&self, node: usize, port: &str, other: usize) -> WireEnd {
         let wished = self.side_towards(node, other);
         let places = self.places(node, port);
@@ -163,6 +169,8 @@ impl DiagramLayout {
     }
 
     /// Chooses the sides of all ports by the directions of their connections, then the heights of the boxes.
+    ///
+    /// Requires the horizontal places of all boxes in the part.
     fn choose_sides(&mut self, graph: &ComponentGraph, part: &[usize]) {
         for &node in part {
             let index = NodeIndex::new(node);
@@ -186,6 +194,8 @@ impl DiagramLayout {
 
     /// Places the boxes of a row vertically: centred at first, then moved towards their neighbours. Returns where the
     /// next row begins.
+    ///
+    /// `top` is the upper edge of the row. The tallest column decides the height of the row.
     fn place_y(&mut self, row: &[Vec<usize>], top: f64, neighbours: &[Vec<usize>]) -> f64 {
         let height = |layout: &DiagramLayout, column: &[usize]| -> f64 {
             column.iter().map(|&n| layout.boxes[n].height + GAP_Y).sum::<f64>() - GAP_Y
@@ -199,7 +209,7 @@ impl DiagramLayout {
             }
         }
         let members: Vec<usize> = row.iter().flatten().copied().collect();
-        // Each move changes the wishes of the neighbours; three rounds are enough for a calm picture.
+        // Each move changes the means of the neighbours, hence several rounds.
         for _ in 0..3 {
             for column in row {
                 self.settle(column, (top, top + tallest), &members, neighbours);
@@ -209,6 +219,8 @@ impl DiagramLayout {
     }
 
     /// Moves each box of a column towards the mean of its neighbours in the row. The order and the gaps stay.
+    ///
+    /// No box leaves the range from `top` to `bottom`, as each one keeps room for those below it.
     fn settle(&mut self, column: &[usize], (top, bottom): (f64, f64), members: &[usize], neighbours: &[Vec<usize>]) {
         let middle = |b: &LayoutBox| b.y + b.height / 2.0;
         let mut y = top;
@@ -219,7 +231,7 @@ impl DiagramLayout {
             let b = &self.boxes[node];
             let wish =
                 if near.is_empty() { b.y } else { near.iter().sum::<f64>() / near.len() as f64 - b.height / 2.0 };
-            // The boxes below need this much room.
+            // This box and those below it need that much room.
             let latest = bottom + GAP_Y - room;
             let place = wish.clamp(y, latest.max(y));
             room -= b.height + GAP_Y;
@@ -302,6 +314,8 @@ fn distances(start: usize, neighbours: &[Vec<usize>]) -> Vec<(usize, usize)> {
 
 /// The columns of a part: nodes of equal distance from one of its ends. Of the two ends, the component declared first
 /// is taken.
+///
+/// Two searches from node to farthest node find the ends, as for the diameter of a tree.
 fn columns(part: &[usize], neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let farthest = |from: usize| {
         let all = distances(from, neighbours);
@@ -322,6 +336,8 @@ fn columns(part: &[usize], neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
 }
 
 /// Orders the nodes of each column by the mean rank of their neighbours, in eight sweeps to and fro.
+///
+/// This is the barycentre method for layered graphs.
 fn ordered(mut columns: Vec<Vec<usize>>, neighbours: &[Vec<usize>]) -> Vec<Vec<usize>> {
     let mut rank = vec![0.0; neighbours.len()];
     let number = |column: &[usize], rank: &mut Vec<f64>| {

@@ -1,6 +1,7 @@
-//! The network of a model as a picture: components as boxes with ports, connections coloured by connector.
+//! Draws the network of a model: components as boxes with ports and symbols, connections coloured by their connector.
 //!
-//! `layout` decides where boxes stand, this file draws them.
+//! A [`ComponentGraph`] enters, an SVG text leaves. `layout` decides where boxes are, `symbols` has the symbols, this
+//! module draws. Marks colour ports and components, for example where a diagnosis suspects an effect.
 
 mod layout;
 pub mod symbols;
@@ -15,31 +16,39 @@ use super::svg::{begin, escape};
 use bramah_model::network::{ComponentBox, ComponentGraph};
 use layout::{BoxSide, DiagramLayout};
 
-/// The colour of the hottest mark.
+/// Red, green and blue of the hottest mark.
 const HOT: [f64; 3] = [213.0, 94.0, 0.0];
 
-/// Something at a port or in a component that is shown as heat.
+/// A mark at a port or component, drawn as a colour between white and `HOT`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeatMark {
-    /// Full name of a port or of anything in a component.
+    /// Full name of a port, or of anything inside a component.
     pub name: String,
-    /// From 0, nothing, to 1.
+    /// Heat from 0 (nothing) to 1.
     pub heat: f64,
-    /// What is said under the pointer.
+    /// Text that appears under the pointer.
     pub note: String,
 }
 
-/// Draws the components and connections of a model's top level.
+/// Draws the components and connections of the top level of a model.
+///
+/// `title` stands above the drawing.
 pub fn write(graph: &ComponentGraph, title: &str) -> String {
     write_marked(graph, title, &[])
 }
 
-/// The same with marks: ports at the top level get a coloured dot and coloured connections, what lies deeper tints its
-/// component.
+/// As `write`, with marks.
+///
+/// The note of a mark appears under the pointer.
+///
+/// A mark of a port at the top level gives a coloured dot, and its connections are coloured when both ends are marked.
+/// A mark deeper inside tints its component.
 pub fn write_marked(graph: &ComponentGraph, title: &str, marks: &[HeatMark]) -> String {
     let layout = DiagramLayout::new(graph);
     let connectors: IndexSet<&str> = graph.edge_weights().map(|w| w.connector.as_str()).collect();
+    // Four entries in a line.
     let legend = 24.0 * connectors.len().div_ceil(4) as f64;
+    // A small network still needs room for its title and legend.
     let (width, height) = (layout.width.max(420.0), layout.height + 56.0 + legend);
     let mut out = begin(width.round(), height.round(), 13, title);
     let _ = write!(
@@ -47,9 +56,11 @@ pub fn write_marked(graph: &ComponentGraph, title: &str, marks: &[HeatMark]) -> 
         "<text x=\"20\" y=\"28\" font-size=\"16\">{}</text>\n<g transform=\"translate(0 44)\">\n",
         escape(title)
     );
+    // Coloured connections are wide and drawn first, so that the lines lie on top of them.
     for edge in graph.edge_references().filter(|_| !marks.is_empty()) {
         let wire = edge.weight();
         let ends = [(edge.source(), &wire.from), (edge.target(), &wire.to)];
+        // Both ends must be marked. The cooler one decides the colour.
         let heats = ends.map(|(n, port)| hottest(marks, &graph[n], port).map_or(0.0, |m| m.heat));
         if heats[0].min(heats[1]) > 0.0 {
             let stroke = (warm(heats[0].min(heats[1])), 9.0);
@@ -62,6 +73,7 @@ pub fn write_marked(graph: &ComponentGraph, title: &str, marks: &[HeatMark]) -> 
         let ends = [(edge.source(), &wire.from), (edge.target(), &wire.to)];
         draw_wire(&mut out, &layout, ends.map(|(n, port)| (n.index(), port.as_str())), (colour(index), 1.8));
     }
+    // Boxes hide the ends of the lines beneath them.
     for node in graph.node_indices() {
         draw_box(&mut out, &layout, node.index(), graph, marks);
     }
@@ -80,15 +92,19 @@ pub fn write_marked(graph: &ComponentGraph, title: &str, marks: &[HeatMark]) -> 
     out
 }
 
-/// `Interfaces.HydraulicPort` is known as `HydraulicPort`.
+/// The last part of a class name: `HydraulicPort` of `Interfaces.HydraulicPort`.
 fn short(class: &str) -> &str {
     class.rsplit('.').next().unwrap_or(class)
 }
 
+/// Draws a connection as a curve between two ports.
+///
+/// `ends` are the node and port of each end. Colour and width of the line follow.
 fn draw_wire(out: &mut String, layout: &DiagramLayout, ends: [(usize, &str); 2], (stroke, width): (&str, f64)) {
     let [(first, _), (second, _)] = ends;
     let a = layout.end(first, ends[0].1, second);
     let b = layout.end(second, ends[1].1, first);
+    // The curve leaves each port horizontally; the reach grows with the distance.
     let reach = |p: &layout::WireEnd| {
         let distance = ((a.x - b.x).abs() * 0.45).clamp(28.0, 120.0) + 0.06 * (a.y - b.y).abs().min(300.0);
         if p.side == BoxSide::Left { p.x - distance } else { p.x + distance }
@@ -107,7 +123,9 @@ fn draw_wire(out: &mut String, layout: &DiagramLayout, ends: [(usize, &str); 2],
     );
 }
 
-/// The hottest mark of a port, or with an empty port of what lies deeper in a component.
+/// The hottest mark of a port. With an empty `port`, the hottest mark of anything inside the component that is no port.
+///
+/// A mark belongs to the component whose name its own name begins with. `None`: there is no mark.
 fn hottest<'a>(marks: &'a [HeatMark], component: &ComponentBox, port: &str) -> Option<&'a HeatMark> {
     let at = |m: &&HeatMark| {
         let (name, rest) = m.name.split_once('.').unwrap_or((&m.name, ""));
@@ -117,19 +135,26 @@ fn hottest<'a>(marks: &'a [HeatMark], component: &ComponentBox, port: &str) -> O
     marks.iter().filter(at).max_by(|a, b| a.heat.total_cmp(&b.heat))
 }
 
-/// From white to the hottest colour.
+/// The colour of a heat: from nearly white to `HOT`.
+///
+/// Even the smallest heat differs visibly from white.
 fn warm(heat: f64) -> String {
     let part = 0.15 + 0.85 * heat.clamp(0.0, 1.0);
     let [r, g, b] = HOT.map(|c| (255.0 + part * (c - 255.0)).round());
     format!("#{:02x}{:02x}{:02x}", r as u8, g as u8, b as u8)
 }
 
+/// Draws the box of a component with name, class, symbol and ports.
+///
+/// Name and class are also the title of the box, which viewers show under the pointer.
 fn draw_box(out: &mut String, layout: &DiagramLayout, node: usize, graph: &ComponentGraph, marks: &[HeatMark]) {
     let component = &graph[petgraph::graph::NodeIndex::new(node)];
     let place = &layout.boxes[node];
     let middle = place.x + place.width / 2.0;
+    // The ports of the model itself belong to a component without name.
     let (name, class) = if component.name.is_empty() { ("(model)", "") } else { (&*component.name, &*component.class) };
     let mark = hottest(marks, component, "");
+    // Half the heat, so that the text on the box stays readable.
     let fill = mark.map_or_else(|| "#f7f7f7".to_string(), |m| warm(0.5 * m.heat));
     let note = mark.map_or_else(String::new, |m| format!(", {}", escape(&m.note)));
     let _ = writeln!(
@@ -154,6 +179,7 @@ fn draw_box(out: &mut String, layout: &DiagramLayout, node: usize, graph: &Compo
         let _ =
             writeln!(out, "<g transform=\"translate({x:.1} {y:.1}) scale({scale:.4})\" color=\"#1f3a4d\">{symbol}</g>");
     }
+    // A port may be drawn on both sides of its box.
     let places = component.ports.iter().flat_map(|port| layout.places(node, port).into_iter().map(move |p| (port, p)));
     for (port, p) in places {
         let (x, anchor) = if p.side == BoxSide::Left { (p.x + 7.0, "start") } else { (p.x - 7.0, "end") };

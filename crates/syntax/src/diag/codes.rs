@@ -1,19 +1,21 @@
-//! The list of diagnostic codes: one row each. The number's first digit names the stage that finds it.
+//! The list of diagnostic codes, one row each: name, number, default severity, title.
+//! The number's first digit names the stage that finds it. `docs/errors` has a page for each code.
 //!
 //! 0 text and names, 1 ports and connections, 2 balance, units and types, 3 structure, 4 initialization, 5 run,
 //! 6 data and studies, 9 command line.
 
-/// How bad it is.
+/// How serious a message is, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// Worth knowing; nothing is wrong.
+    /// Worth knowing, although nothing is wrong.
     Note,
-    /// Probably not what was meant.
+    /// Probably not what the user meant. The result can be used.
     Warning,
     /// The model or the run cannot be used.
     Error,
 }
 
+// Makes the enumeration of codes and its lookups from the rows below.
 macro_rules! codes {
     ($($name:ident = $number:literal, $severity:ident, $title:literal;)*) => {
         /// A kind of diagnostic.
@@ -145,7 +147,8 @@ impl std::fmt::Display for Code {
 }
 
 impl Code {
-    /// What helps in general, for messages whose place has no better advice.
+    /// Advice that helps with every message of this code, for messages without more specific help.
+    /// `None` if there is no such advice.
     pub fn advice(self) -> Option<&'static str> {
         Some(match self {
             Code::WrongClassKind => "see `bramah explain CLASS` for what a class is and holds",

@@ -1,22 +1,25 @@
-//! Diagnostics with their texts, as the error of a function.
+//! Diagnostics together with their texts, as the error type of functions that fail.
+//! The front crate and the Python package hand it to their users.
 
 use super::render::{DiagnosticFormat, full, render};
 use super::{Diagnostic, Sources};
 use std::fmt;
 use std::sync::Arc;
 
-/// What went wrong, with the texts that its places point into. Prints as short messages, one a line, in `Debug` too: a
-/// test's `unwrap` shows what a user reads, not the texts of the library.
+/// What went wrong, with the texts that the places point into.
+///
+/// `Display` prints short messages, one a line. `Debug` does the same, so that the `unwrap` of a test shows what a user
+/// reads and not the texts of the library.
 #[derive(Clone)]
 pub struct Error {
     /// The diagnostics, errors among them.
     pub diagnostics: Vec<Diagnostic>,
-    /// The texts.
+    /// The texts that the spans of the diagnostics refer to.
     pub sources: Arc<Sources>,
 }
 
 impl Error {
-    /// What the command prints: with the text concerned, causes and help.
+    /// The messages as the command prints them: with lines of the text, causes and help.
     pub fn full(&self) -> String {
         full(&self.sources, &self.diagnostics)
     }

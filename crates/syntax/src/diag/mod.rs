@@ -1,7 +1,8 @@
-//! The one diagnostic type, and the places in source texts it points to.
+//! Diagnostics, and the places in source texts that they point to.
 //!
-//! Every stage returns [`StageResult`]: what it could make of its input, and what it has to say about it.
-//! Rendering (human, short, JSON) lives in [`render`]; the list of codes in [`codes`].
+//! Every stage of the compiler returns a [`StageResult`]: what it could make of its input, and its diagnostics.
+//! A [`Diagnostic`] is built by chained methods: `Diagnostic::new(code, message).at(span, label).help(text)`.
+//! [`render`] writes diagnostics for people, for tools, and as JSON. [`codes`] has the list of codes.
 
 pub mod codes;
 mod error;
@@ -12,16 +13,16 @@ pub use codes::{Code, Severity};
 pub use error::Error;
 pub use nearest::nearest;
 
-/// Index of a text in [`Sources`].
+/// The index of a text in [`Sources`]. It is meaningful only together with the `Sources` that it came from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FileId(pub u32);
 
-/// A stretch of bytes in one source text.
+/// A range of bytes in one source text. Spans compare by file, then by place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Span {
-    /// The text.
+    /// The text that the bytes are counted in.
     pub file: FileId,
-    /// First byte.
+    /// The first byte, counted from 0.
     pub start: u32,
     /// One past the last byte.
     pub end: u32,
@@ -35,17 +36,18 @@ impl Span {
     }
 }
 
-/// One text the user wrote, or one that ships with bramah.
+/// One source text: a file of the user, or one that ships with bramah.
 #[derive(Clone, Debug)]
 pub struct SourceText {
     /// The path as the user knows it.
     pub path: String,
-    /// The whole text.
+    /// The complete text.
     pub text: String,
 }
 
-/// All texts of one run, in the order in which they were read.
+/// All texts of one run, in the order in which they were read. Spans refer to them by [`FileId`].
 #[derive(Clone, Debug, Default)]
+/// The texts; a `FileId` is an index here.
 pub struct Sources {
     files: Vec<SourceText>,
 }
@@ -56,26 +58,28 @@ impl Sources {
         self.files.iter()
     }
 
-    /// Adds a text and returns its index.
+    /// Adds a text and gives its index.
     pub fn add(&mut self, path: impl Into<String>, text: impl Into<String>) -> FileId {
         self.files.push(SourceText { path: path.into(), text: text.into() });
         FileId(u32::try_from(self.files.len() - 1).expect("fewer than 2^32 files"))
     }
 
-    /// The text behind an index.
+    /// The text of an index.
     pub fn get(&self, file: FileId) -> &SourceText {
         &self.files[file.0 as usize]
     }
 
-    /// The words a span covers.
+    /// The text that a span covers. Empty if the span does not fit the text.
     pub fn text(&self, span: Span) -> &str {
         self.get(span.file).text.get(span.start as usize..span.end as usize).unwrap_or("")
     }
 
-    /// Line and column, both counted from 1, columns in characters.
+    /// The line and column of a byte, both counted from 1. Columns count characters, not bytes.
+    /// An offset past the end of the text means the end.
     pub fn line_column(&self, file: FileId, offset: u32) -> (usize, usize) {
         let text = &self.get(file).text;
         let mut at = (offset as usize).min(text.len());
+        // A place inside a character of several bytes counts as the beginning of that character.
         while !text.is_char_boundary(at) {
             at -= 1;
         }
@@ -86,49 +90,49 @@ impl Sources {
     }
 }
 
-/// A place in a text with what is to be said there.
+/// A place in a text, with a short remark about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label {
     /// The place.
     pub span: Span,
-    /// What is said there; may be empty.
+    /// The remark. It may be empty, which only marks the place.
     pub text: String,
 }
 
-/// Something the user should know.
+/// A message for the user: an error, a warning or a note.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// Which kind of thing; carries stage, number and default severity.
+    /// The kind of message, with its number and default severity.
     pub code: Code,
     /// Error, warning or note.
     pub severity: Severity,
     /// One line, names in backticks as the user wrote them.
     pub message: String,
-    /// Places; the first is the primary one.
+    /// The places concerned. The first is the primary one, which editors jump to.
     pub labels: Vec<Label>,
-    /// The component instance concerned, by its full name.
+    /// The full name of the component instance concerned.
     pub instance: Option<String>,
-    /// The class concerned.
+    /// The name of the class concerned.
     pub class: Option<String>,
     /// Facts that explain the message, possibly tables of several lines.
     pub notes: Vec<String>,
-    /// What to do about it.
+    /// Advice, one entry for each alternative.
     pub help: Vec<String>,
-    /// A change of the text that would do it, for editors.
+    /// A change of the text that would solve the problem. Editors offer it.
     pub fix: Option<TextReplacement>,
 }
 
-/// A change of a text.
+/// A change of a text: some bytes are replaced by others.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextReplacement {
-    /// What is replaced; empty where something is inserted.
+    /// The bytes to be replaced. An empty span inserts.
     pub span: Span,
-    /// What stands there afterwards.
+    /// The new text.
     pub text: String,
 }
 
 impl Diagnostic {
-    /// A diagnostic of the code's own severity, without places yet.
+    /// A diagnostic with the default severity of its code, and without places.
     pub fn new(code: Code, message: impl Into<String>) -> Self {
         Diagnostic {
             code,
@@ -164,7 +168,7 @@ impl Diagnostic {
         self
     }
 
-    /// Proposes the name that was probably meant in place of the one at the primary place.
+    /// Proposes `near` as the name that was probably meant, as help and as a fix at the primary place.
     #[must_use]
     pub fn meant(self, near: &str) -> Self {
         let primary = self.labels.first().map(|l| l.span);
@@ -175,14 +179,14 @@ impl Diagnostic {
         }
     }
 
-    /// Proposes a change of the text.
+    /// Proposes a change of the text, which replaces a fix proposed before.
     #[must_use]
     pub fn fix(mut self, span: Span, text: impl Into<String>) -> Self {
         self.fix = Some(TextReplacement { span, text: text.into() });
         self
     }
 
-    /// The same with the advice of its code, where nothing better was said.
+    /// Adds the general advice of the code if there is no help yet.
     #[must_use]
     pub fn advised(mut self) -> Self {
         if self.help.is_empty() {
@@ -211,9 +215,9 @@ impl Diagnostic {
     }
 }
 
-/// What a stage made of its input, and what it says about it.
+/// The result of a stage, with its diagnostics.
 ///
-/// `value` is `None` only when there is an error among the diagnostics.
+/// `value` is `None` only if there is an error among the diagnostics; a value may come with errors too.
 #[derive(Clone, Debug)]
 pub struct StageResult<T> {
     /// The result, if one could be made.
@@ -223,17 +227,18 @@ pub struct StageResult<T> {
 }
 
 impl<T> StageResult<T> {
-    /// A result with remarks.
+    /// A result, with warnings and notes or with errors that did not prevent it.
     pub fn new(value: T, diagnostics: Vec<Diagnostic>) -> Self {
         StageResult { value: Some(value), diagnostics }
     }
 
-    /// No result.
+    /// No result; `diagnostics` must contain an error.
     pub fn failed(diagnostics: Vec<Diagnostic>) -> Self {
         StageResult { value: None, diagnostics }
     }
 
-    /// Appends the diagnostics to `sink` and hands out the value, or nothing if there was an error.
+    /// Appends the diagnostics to `sink` and hands out the value.
+    /// `None` if there was an error, even if there is a value.
     pub fn sink(self, sink: &mut Vec<Diagnostic>) -> Option<T> {
         let failed = self.diagnostics.iter().any(Diagnostic::is_error);
         sink.extend(self.diagnostics);

@@ -1,11 +1,13 @@
-//! Did you mean: the known name nearest to a mis-spelled one.
+//! "Did you mean": the known name nearest to a misspelt one.
+//! All stages call [`nearest`] for messages about unknown names.
 
-/// Longer names are not compared; the distance takes time with the product of the lengths.
+/// The length in characters beyond which names are not compared. The time grows with the product of both lengths.
 const LONGEST: usize = 200;
 
-/// The candidate that `name` was probably meant to be: equal but for case, or a few letters away.
+/// The candidate that `name` was probably meant to be: equal except for case, or a few letters away.
+/// Distance is that of Damerau and Levenshtein: letters inserted, removed, replaced, or two neighbours swapped.
 ///
-/// Of several equally near ones the first is taken. `None` where nothing is near.
+/// Of several equally near candidates the first is taken. `None` if none is near, or if `name` is empty or too long.
 pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let length = name.chars().count();
     if name.is_empty() || length > LONGEST {
@@ -18,7 +20,9 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
             continue;
         }
         let distance = strsim::damerau_levenshtein(&lower, &candidate.to_lowercase());
+        // One letter in three may differ, and at least one.
         let allowed = (length.max(candidate.chars().count()) / 3).max(1);
+        // Names of one or two letters are near to too many others: only their case may differ.
         let short_swap = length <= 2 && distance > 0;
         if distance <= allowed && !short_swap && best.is_none_or(|(d, _)| distance < d) {
             best = Some((distance, candidate));

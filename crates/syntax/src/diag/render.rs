@@ -1,4 +1,5 @@
-//! Diagnostics as text: for people, one line each, and JSON.
+//! Diagnostics as text: for people, with the lines concerned; one line each, for editors and tests; and as JSON.
+//! The command, the editor and [`super::Error`] call these functions. Long lists are cut for people, never in JSON.
 
 use std::fmt::Write as _;
 
@@ -8,24 +9,24 @@ use serde::Serialize;
 
 use super::{Diagnostic, FileId, Label, Severity, Sources, Span};
 
-/// No list in a message for people is longer than this.
+/// The largest number of places, notes, helps or list lines shown to people for one message.
 const LONGEST_LIST: usize = 10;
 
-/// How diagnostics are written.
+/// The form in which diagnostics are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DiagnosticFormat {
-    /// With the text concerned, several lines each.
+    /// For people: with the lines concerned, several lines each.
     #[default]
     Human,
-    /// `file:line:col: error[E103]: text`
+    /// For tools: one line each, `file:line:col: error[E103]: text`.
     Short,
-    /// One JSON object a line.
+    /// For programs: one JSON object a line.
     Json,
 }
 
-/// Writes diagnostics in the given format, each ended by a line break.
+/// Writes diagnostics in the given format, in their order. Each ends with a line break.
 ///
-/// `width` (characters a line) and `colour` matter for [`DiagnosticFormat::Human`] only.
+/// `width` (characters a line) and `colour` (terminal escapes) apply to [`DiagnosticFormat::Human`] only.
 pub fn render(
     sources: &Sources,
     diagnostics: &[Diagnostic],
@@ -53,20 +54,20 @@ pub fn render(
     out
 }
 
-/// Characters a line of [`full`].
+/// The width of [`full`] in characters.
 const WIDTH: usize = 100;
 
-/// What the command prints, without colour: with the text concerned, causes and help.
+/// The messages as the command prints them, without colour.
 pub fn full(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     render(sources, diagnostics, DiagnosticFormat::Human, WIDTH, false).trim_end().to_owned()
 }
 
-/// One line a diagnostic, without colour: what tests and editors read.
+/// One line for each diagnostic, without colour. Tests and editors read it.
 pub fn short_list(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
     render(sources, diagnostics, DiagnosticFormat::Short, usize::MAX, false)
 }
 
-/// `2 errors, 1 warning`, or nothing where there is nothing to count.
+/// A summary such as `2 errors, 1 warning`. `None` if there are neither errors nor warnings.
 pub fn count(diagnostics: &[Diagnostic]) -> Option<String> {
     let number = |s: Severity| diagnostics.iter().filter(|d| d.severity == s).count();
     let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
@@ -78,6 +79,7 @@ pub fn count(diagnostics: &[Diagnostic]) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join(", "))
 }
 
+/// The severity as a word.
 fn severity_name(severity: Severity) -> &'static str {
     match severity {
         Severity::Error => "error",
@@ -86,11 +88,13 @@ fn severity_name(severity: Severity) -> &'static str {
     }
 }
 
-/// Texts may quote names from damaged files: control characters are made visible, line breaks stay.
+/// The text with control characters made visible, except for line breaks.
+/// Messages may quote names from damaged files, and such characters could change the terminal.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() && c != '\n' { '\u{fffd}' } else { c }).collect()
 }
 
+/// One line: place, severity, code, message. Without a label there is no place.
 fn short(sources: &Sources, d: &Diagnostic) -> String {
     let mut line = String::new();
     if let Some(label) = d.labels.first() {
@@ -102,6 +106,7 @@ fn short(sources: &Sources, d: &Diagnostic) -> String {
     line
 }
 
+/// A diagnostic in JSON. The fields are those of [`Diagnostic`]; names are part of the interface to tools.
 #[derive(Serialize)]
 struct JsonDiagnostic<'a> {
     code: &'a str,
@@ -114,21 +119,25 @@ struct JsonDiagnostic<'a> {
     help: &'a [String],
 }
 
+/// A label in JSON. Lines and columns count from 1.
 #[derive(Serialize)]
 struct JsonLabel<'a> {
     file: &'a str,
     line: usize,
+    /// The line and column one past the last character.
     column: usize,
     end: JsonPlace,
     text: &'a str,
 }
 
+/// A place in JSON, counted from 1.
 #[derive(Serialize)]
 struct JsonPlace {
     line: usize,
     column: usize,
 }
 
+/// One JSON object on one line.
 fn json(sources: &Sources, d: &Diagnostic) -> String {
     let object = JsonDiagnostic {
         code: d.code.id(),
@@ -143,6 +152,7 @@ fn json(sources: &Sources, d: &Diagnostic) -> String {
     serde_json::to_string(&object).expect("strings and numbers always serialize")
 }
 
+/// The label with its places as lines and columns.
 fn json_label<'a>(sources: &'a Sources, label: &'a Label) -> JsonLabel<'a> {
     let (line, column) = sources.line_column(label.span.file, label.span.start);
     let (end_line, end_column) = sources.line_column(label.span.file, label.span.end);
@@ -155,6 +165,7 @@ fn json_label<'a>(sources: &'a Sources, label: &'a Label) -> JsonLabel<'a> {
     }
 }
 
+/// The message with the lines concerned, as the crate `annotate_snippets` lays it out.
 fn human(sources: &Sources, d: &Diagnostic, width: usize, colour: bool) -> String {
     let level = match d.severity {
         Severity::Error => Level::ERROR,
@@ -170,11 +181,13 @@ fn human(sources: &Sources, d: &Diagnostic, width: usize, colour: bool) -> Strin
     }
     let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
     let report: &[Group<'_>] = &[group];
+    // ASCII decoration, because not every terminal and log shows line-drawing characters.
     let text = renderer.decor_style(DecorStyle::Ascii).term_width(width.clamp(40, 10_000)).render(report);
     if d.labels.is_empty() { without_margin(&text, colour) } else { text }
 }
 
-/// Without a text beside it the empty margin line has no meaning.
+/// Removes margin lines from a message without a source text, where they have no meaning.
+/// A coloured text is left as it is, because its escapes hide such lines.
 fn without_margin(text: &str, colour: bool) -> String {
     if colour {
         return text.to_owned();
@@ -182,12 +195,14 @@ fn without_margin(text: &str, colour: bool) -> String {
     text.lines().filter(|line| line.trim() != "|").collect::<Vec<_>>().join("\n")
 }
 
+/// The notes of a message, and further ones: how many places are not shown, and which component is concerned.
 fn notes(d: &Diagnostic) -> Vec<String> {
     let mut notes: Vec<String> = capped(&d.notes).iter().map(|n| shortened(n)).collect();
     let hidden = d.labels.len().saturating_sub(LONGEST_LIST);
     if hidden > 0 {
         notes.push(format!("and {hidden} more places (`--message-format json` lists all)"));
     }
+    // A message that names the component already needs no note about it.
     if let Some(instance) = d.instance.as_deref().filter(|i| !i.is_empty() && !d.message.contains(i)) {
         let class = d.class.as_deref().map(|c| format!(" of class `{c}`")).unwrap_or_default();
         notes.push(printable(&format!("in component `{instance}`{class}")));
@@ -195,7 +210,7 @@ fn notes(d: &Diagnostic) -> Vec<String> {
     notes
 }
 
-/// The first entries of a list, and how many were left out.
+/// The first entries of a list, and a line that says how many are left out.
 fn capped(list: &[String]) -> Vec<String> {
     let mut shown: Vec<String> = list.iter().take(LONGEST_LIST).cloned().collect();
     if list.len() > LONGEST_LIST {
@@ -204,7 +219,7 @@ fn capped(list: &[String]) -> Vec<String> {
     shown
 }
 
-/// A text of many lines is a headline and a list: the list is cut.
+/// A text cut to its first lines: a headline and up to [`LONGEST_LIST`] lines of a list.
 fn shortened(text: &str) -> String {
     let lines: Vec<&str> = text.lines().collect();
     let text = printable(text);
@@ -216,7 +231,7 @@ fn shortened(text: &str) -> String {
     shown
 }
 
-/// One snippet a file, the primary label's file first.
+/// One snippet for each file with labels, the file of the primary label first.
 fn snippets<'a>(sources: &'a Sources, labels: &'a [Label]) -> Vec<Snippet<'a, Annotation<'a>>> {
     let shown = &labels[..labels.len().min(LONGEST_LIST)];
     let mut files: Vec<FileId> = Vec::new();
@@ -229,7 +244,8 @@ fn snippets<'a>(sources: &'a Sources, labels: &'a [Label]) -> Vec<Snippet<'a, An
     files.into_iter().map(|file| snippet(sources, file, shown, primary == Some(file))).collect()
 }
 
-/// The lines of one file that carry labels; the text is cut to them, so that long files cost nothing.
+/// The lines of one file that carry labels. The text is cut to these lines, so that long files cost no time.
+/// With `primary`, the first label of the file is the primary one.
 fn snippet<'a>(sources: &'a Sources, file: FileId, labels: &'a [Label], primary: bool) -> Snippet<'a, Annotation<'a>> {
     let text = sources.get(file).text.as_str();
     let own: Vec<&Label> = labels.iter().filter(|l| l.span.file == file).collect();
@@ -248,7 +264,8 @@ fn snippet<'a>(sources: &'a Sources, file: FileId, labels: &'a [Label], primary:
     Snippet::source(&text[from..to]).line_start(line).path(sources.get(file).path.as_str()).annotations(annotations)
 }
 
-/// The span inside the text, on character boundaries; of a span over many lines only the first line is marked.
+/// The bytes of the text that a span marks, moved to character boundaries and inside the text.
+/// Of a span over several lines only the first line is marked.
 fn clamped(text: &str, span: Span) -> (usize, usize) {
     let boundary = |mut at: usize| {
         while !text.is_char_boundary(at) {

@@ -1,4 +1,9 @@
-//! The sections of a long class, and its end.
+//! The body of a long class: its sections, their items, and the `end` that closes it.
+//! `class::class_definition` calls [`long_class`] after the name of the class.
+//!
+//! Elements go to one list, equations to one list for each kind of section, and algorithms keep their sections,
+//! because the order of statements counts only within a section (Modelica 3.6, section 11.1).
+//! Items in the wrong section are reported and still become part of the tree.
 
 use super::{
     OpenBlock, OpenBlockKind, ParseResult, Parser, element, equation, expr, is_class_keyword, modification, statement,
@@ -7,27 +12,36 @@ use crate::ast::{Class, ClassBody, ClassKind, ElementPrefixes, Ident, LongBody, 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::token::TokenKind;
 
-/// Which kind of section of a class we are in.
+/// The kind of section that the cursor is in.
 #[derive(Clone, Copy, PartialEq)]
 enum SectionKind {
+    /// `public`, `protected`, or the part before the first section keyword.
     Elements,
+    /// `equation` or `initial equation`.
     Equations { initial: bool },
+    /// `algorithm` or `initial algorithm`.
     Algorithm { initial: bool },
 }
 
-/// A long class while its body is read.
+/// A long class while its body is parsed.
 struct LongBodyBuilder {
+    /// What has been parsed so far.
     out: LongBody,
+    /// The section that the next item belongs to.
     section: SectionKind,
+    /// True in a `protected` section.
     protected: bool,
-    /// Set by a declaration in an equation section, for which the section is blamed once.
+    /// Set by a declaration in an equation or algorithm section, so that such declarations are reported once a section.
     misplaced: bool,
+    /// The annotations of the class; those after the first are appended to it.
     annotation: Option<Modification>,
-    /// Where the annotation stands, until something after it is blamed.
+    /// Where the annotation stands. `None` before there is one, and again after a message that it is not last.
     annotated: Option<Span>,
 }
 
-/// From the description of a long class on.
+/// Parses a long class from its description on, `end` and name included.
+/// `start` is where the class began; `class_extends` is as in [`LongBody`].
+/// An unclosed or wrongly closed class still gives a tree.
 pub(super) fn long_class(
     p: &mut Parser<'_>,
     start: Span,
@@ -53,6 +67,7 @@ pub(super) fn long_class(
         if section_or_item(p, &mut body).is_err() {
             p.recover();
         }
+        // A token that no item consumes must be skipped here, or the loop would not end.
         if p.at == before {
             p.bump();
         }
@@ -73,13 +88,14 @@ pub(super) fn long_class(
     }))
 }
 
-/// At an `end` that is not a stray `end if` or the like.
+/// True at an `end` that closes a class; false at a stray `end if` or the like, which is reported as an item.
 fn at_class_end(p: &Parser<'_>) -> bool {
     use TokenKind::{For, If, When, While};
     let is_block = matches!(p.peek_kind(1), If | For | When | While);
     p.at(TokenKind::End) && p.is_closing_end() && !is_block
 }
 
+/// The `end Name` of a class, with messages about what stands there instead.
 fn class_end(p: &mut Parser<'_>, open: OpenBlock, name: Ident) {
     let found = p.peek(1);
     if p.at(TokenKind::Eof) {
@@ -91,6 +107,7 @@ fn class_end(p: &mut Parser<'_>, open: OpenBlock, name: Ident) {
     }
     if p.word(found) == name.name.as_str() {
         p.misnested = false;
+    // The name belongs to an enclosing class: that `end` stays for it, and this class is the unclosed one.
     } else if p.is_open_class(p.word(found)) {
         return p.unclosed(open);
     } else {
@@ -100,17 +117,20 @@ fn class_end(p: &mut Parser<'_>, open: OpenBlock, name: Ident) {
     p.bump();
 }
 
-/// A section keyword, or one element, equation or statement with its semicolon.
+/// A section keyword, an annotation, or an item with its semicolon.
 fn section_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     check_annotation_is_last(p, body);
     let before = body.section;
     let result = section_keyword_or_item(p, body);
+    // A new section may be blamed again for its first misplaced declaration.
     body.misplaced &= body.section == before;
     result
 }
 
+/// The same, without the checks of what came before.
 fn section_keyword_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     match p.kind() {
+        // `public` and `protected` also end an equation or algorithm section.
         TokenKind::Public | TokenKind::Protected => {
             body.protected = p.at(TokenKind::Protected);
             body.section = SectionKind::Elements;
@@ -128,25 +148,30 @@ fn section_keyword_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> Pa
     Ok(())
 }
 
+/// Begins the section whose keyword is at the cursor.
 fn enter_section(p: &mut Parser<'_>, body: &mut LongBodyBuilder, initial: bool) {
     if p.at(TokenKind::Equation) {
         body.section = SectionKind::Equations { initial };
     } else {
         body.section = SectionKind::Algorithm { initial };
         let sections = if initial { &mut body.out.initial_algorithms } else { &mut body.out.algorithms };
+        // Each `algorithm` keyword begins a section of its own; equation sections are joined.
         sections.push(Vec::new());
     }
     p.bump();
 }
 
+/// An element, or all equations or statements up to the next section or stray word.
 fn item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     if stray_word(p) || p.stray_semicolon() {
         return Ok(());
     }
+    // Reported, then read as a declaration: its names are used elsewhere and would seem unknown.
     if body.section != SectionKind::Elements && begins_declaration(p) {
         blame_declaration(p, body);
         return element_item(p, body);
     }
+    // An equation among the declarations: the section keyword was forgotten, and is assumed from here on.
     if body.section == SectionKind::Elements {
         body.section = forgotten_section(p).unwrap_or(SectionKind::Elements);
     }
@@ -162,6 +187,7 @@ fn item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
             let sections = if initial { &mut body.out.initial_algorithms } else { &mut body.out.algorithms };
             match sections.last_mut() {
                 Some(last) => last.extend(statements),
+                // A forgotten `algorithm` keyword has begun no section yet.
                 None => sections.push(statements),
             }
         }
@@ -169,11 +195,13 @@ fn item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     Ok(())
 }
 
+/// A declaration, import, `extends` or nested class, with its semicolon.
 fn element_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     element::element(p, body.protected, &mut body.out.elements)?;
     p.semicolon()
 }
 
+/// Reports a declaration in an equation or algorithm section, once for each section.
 fn blame_declaration(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
     if !std::mem::replace(&mut body.misplaced, true) {
         let rule = "a declaration stands before the first `equation` or `algorithm`, or after `public` or `protected`";
@@ -181,7 +209,7 @@ fn blame_declaration(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
     }
 }
 
-/// Reports and passes over `end if`, `else` and the like where nothing of the kind is open.
+/// Reports and skips a word such as `end if` or `else` that belongs to no open block. False if there is none.
 fn stray_word(p: &mut Parser<'_>) -> bool {
     use TokenKind as T;
     let block = match p.kind() {
@@ -196,6 +224,7 @@ fn stray_word(p: &mut Parser<'_>) -> bool {
     true
 }
 
+/// Reports and skips an `end` that closes nothing, with its word and semicolon.
 fn stray_end(p: &mut Parser<'_>) -> bool {
     if p.is_closing_end() {
         let block = p.word(p.peek(1));
@@ -210,6 +239,7 @@ fn stray_end(p: &mut Parser<'_>) -> bool {
     true
 }
 
+/// Reports `word`, which belongs to a `block` that is not open.
 fn blame_stray(p: &mut Parser<'_>, word: &str, block: &str) {
     let help = format!("leave out `{word}`, or look for an `end` too many above");
     let diagnostic = Diagnostic::new(Code::Syntax, format!("`{word}` without `{block}`"))
@@ -218,13 +248,15 @@ fn blame_stray(p: &mut Parser<'_>, word: &str, block: &str) {
     p.report_end(diagnostic);
 }
 
+/// True at a token that begins a declaration and cannot begin an equation or statement.
 fn begins_declaration(p: &Parser<'_>) -> bool {
     use TokenKind as T;
     matches!(p.kind(), T::Import | T::Extends | T::Parameter | T::Constant)
         || is_class_keyword(p.kind()) && p.starts_class()
 }
 
-/// Reports an equation or statement among the declarations; gives the section that was meant.
+/// Recognises an equation or statement among the declarations, and reports the missing section keyword.
+/// Gives the section meant; `None` at a declaration.
 fn forgotten_section(p: &mut Parser<'_>) -> Option<SectionKind> {
     use TokenKind as T;
     let follows = p.peek_kind(1);
@@ -244,6 +276,7 @@ fn forgotten_section(p: &mut Parser<'_>) -> Option<SectionKind> {
     Some(section)
 }
 
+/// An annotation of the class, with its semicolon. Several annotations are merged.
 fn class_annotation(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     let span = p.span();
     if let Some(annotation) = modification::annotation(p)? {
@@ -256,7 +289,9 @@ fn class_annotation(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResu
     p.semicolon()
 }
 
+/// Reports an annotation that something follows: the grammar has it at the end of a class.
 fn check_annotation_is_last(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
+    // Taken out, so that the message comes once.
     if let Some(span) = body.annotated.take() {
         let diagnostic = Diagnostic::new(Code::Syntax, "the annotation of a class stands at its end")
             .at(span, "something follows this annotation")
@@ -265,7 +300,8 @@ fn check_annotation_is_last(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
     }
 }
 
-/// `external "C" y = f(x) annotation(...);`
+/// The external function interface, `external "C" y = f(x) annotation(...);` (Modelica 3.6, section 12.9).
+/// The text between keyword and semicolon is kept as written; the crate `model` reads the call from it.
 fn external(p: &mut Parser<'_>, out: &mut LongBody) -> ParseResult<()> {
     let start = p.span();
     p.bump();
@@ -274,6 +310,7 @@ fn external(p: &mut Parser<'_>, out: &mut LongBody) -> ParseResult<()> {
         p.bump();
     }
     if !matches!(p.kind(), TokenKind::Semicolon | TokenKind::Annotation) {
+        // Parsed only for its errors: the tree holds the text.
         let call = expr::simple_expression(p)?;
         if p.eat(TokenKind::Equal) {
             expr::simple_expression(p)?;

@@ -1,4 +1,6 @@
-//! Files, and the heads and short forms of classes.
+//! Files, and the heads and short forms of classes (Modelica 3.6, appendix A.2.1 and A.2.2).
+//! [`crate::parse`] calls [`stored_definition`]; elements and modifications call [`class`] for nested and redeclared
+//! classes. The bodies of long classes are in `body`.
 
 use super::modification::ModificationContext;
 use super::{ParseAbort, ParseResult, Parser, body, element, is_class_keyword, modification};
@@ -8,7 +10,8 @@ use crate::token::TokenKind;
 
 // Files.
 
-/// A whole file.
+/// The production `stored-definition`: an optional `within` clause and the classes of the file.
+/// Reads to the end of the text. Classes that cannot be parsed are left out.
 pub fn stored_definition(p: &mut Parser<'_>) -> StoredDefinition {
     let mut file = StoredDefinition { within: within(p).ok().flatten(), classes: Vec::new() };
     while !p.at(TokenKind::Eof) {
@@ -17,6 +20,7 @@ pub fn stored_definition(p: &mut Parser<'_>) -> StoredDefinition {
             Ok(class) => file.classes.push(*class),
             Err(ParseAbort) => recover_to_class(p),
         }
+        // Recovery may stop at a class keyword that again gives no class: each round must consume a token.
         if p.at == before {
             p.bump();
         }
@@ -24,6 +28,7 @@ pub fn stored_definition(p: &mut Parser<'_>) -> StoredDefinition {
     file
 }
 
+/// The `within` clause. `Ok(None)` without one, and for `within;`, which names the root.
 fn within(p: &mut Parser<'_>) -> ParseResult<Option<Path>> {
     if !p.eat(TokenKind::Within) {
         return Ok(None);
@@ -35,6 +40,7 @@ fn within(p: &mut Parser<'_>) -> ParseResult<Option<Path>> {
     Ok(path)
 }
 
+/// A class at the top level of a file, with its semicolon; `final` may stand before it.
 fn top_level_class(p: &mut Parser<'_>) -> ParseResult<Box<Class>> {
     let start = p.span();
     let final_ = p.eat(TokenKind::Final);
@@ -49,7 +55,7 @@ fn top_level_class(p: &mut Parser<'_>) -> ParseResult<Box<Class>> {
     Ok(class)
 }
 
-/// Skips to the next class; what lies between has no place in a file.
+/// Skips to the next class. Only classes may stand at the top level of a file.
 fn recover_to_class(p: &mut Parser<'_>) {
     p.guessed = false;
     while !(p.at(TokenKind::Eof) || is_class_keyword(p.kind()) && p.starts_class()) {
@@ -59,17 +65,20 @@ fn recover_to_class(p: &mut Parser<'_>) {
 
 // Heads.
 
-/// A class from `encapsulated`, `partial` or its keyword on.
+/// A class definition from `encapsulated`, `partial` or its keyword on, one nesting level deeper.
+/// `prefixes` are those that were read before.
 pub(super) fn class(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     p.nested(|p| class_definition(p, prefixes))
 }
 
-/// A class with what may follow it when it is replaceable.
+/// A class that is an element: a `constrainedby` clause with its own comment may follow.
+/// `start` is the place of the first prefix.
 pub(super) fn replaceable_class(p: &mut Parser<'_>, start: Span, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let mut class = class(p, prefixes)?;
     if p.at(TokenKind::Constrainedby) {
         class.constraint = modification::constraint(p)?;
         let (description, annotation) = modification::comment(p)?;
+        // The comment after the constraint holds where the class has none of its own.
         class.description = class.description.or(description);
         class.annotation = class.annotation.or(annotation);
     }
@@ -77,11 +86,13 @@ pub(super) fn replaceable_class(p: &mut Parser<'_>, start: Span, prefixes: Eleme
     Ok(class)
 }
 
+/// The head of a class, and its body in the form that follows: long, short, enumeration or derivative.
 fn class_definition(p: &mut Parser<'_>, mut prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let start = p.span();
     prefixes.encapsulated = p.eat(TokenKind::Encapsulated);
     prefixes.partial = p.eat(TokenKind::Partial);
     let (kind, keyword) = class_kind(p)?;
+    // `model extends M(...)` changes an inherited class of the same name (Modelica 3.6, section 7.3.1).
     if p.eat(TokenKind::Extends) {
         let name = p.ident("the name of the inherited class")?;
         let modification = modification::optional_class_modification(p, ModificationContext::Extends)?;
@@ -94,7 +105,8 @@ fn class_definition(p: &mut Parser<'_>, mut prefixes: ElementPrefixes) -> ParseR
     body::long_class(p, start, kind, prefixes, name, None)
 }
 
-/// The name of a class, which is missing when the next line is the declaration of a component.
+/// The name of a class; `keyword` is named in the message if it is missing.
+/// If the next line is a component declaration, its type must not be taken for the name.
 fn class_name(p: &mut Parser<'_>, keyword: &str) -> ParseResult<Ident> {
     let what = format!("the name of the {keyword}");
     let declares = matches!(
@@ -112,13 +124,18 @@ fn class_name(p: &mut Parser<'_>, keyword: &str) -> ParseResult<Ident> {
     if is_missing { Err(p.unexpected(&what)) } else { p.ident(&what) }
 }
 
-/// The specialised class, with its main keyword.
+/// The kind of a class from its keywords, and the main keyword for messages.
+///
+/// # Errors
+/// Reports keywords that do not go together, such as `expandable model`, and a missing kind.
 fn class_kind(p: &mut Parser<'_>) -> ParseResult<(ClassKind, &'static str)> {
     let purity = match p.kind() {
         TokenKind::Pure => Some(true),
         TokenKind::Impure => Some(false),
         _ => None,
     };
+    // `pure` and `impure` stand before functions only, `expandable` before connectors, `operator` before records,
+    // functions, or alone.
     if purity.is_some() {
         p.bump();
     }
@@ -145,6 +162,7 @@ fn class_kind(p: &mut Parser<'_>) -> ParseResult<(ClassKind, &'static str)> {
 
 // The short forms.
 
+/// A class of the form `type A = ...`; the cursor is behind the sign.
 fn short_class(
     p: &mut Parser<'_>,
     start: Span,
@@ -162,6 +180,7 @@ fn short_class(
     Ok(Box::new(Class { name, kind, prefixes, constraint: None, body, description, annotation, span }))
 }
 
+/// The base of a short class: `input Real[3](unit = "m")`.
 fn short_body(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     let prefix = element::type_prefix(p);
     let base = p.path("the name of a class")?;
@@ -170,7 +189,7 @@ fn short_body(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     Ok(ClassBody::Short { prefix, base, subscripts, modification })
 }
 
-/// `enumeration(a, b "text")` or `enumeration(:)`.
+/// `enumeration(a, b "text")`, or `enumeration(:)` for an enumeration whose literals are left open.
 fn enumeration(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;
@@ -186,13 +205,14 @@ fn enumeration(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     Ok(ClassBody::Enumeration((!open_ended).then_some(literals)))
 }
 
+/// A literal of an enumeration. Its annotation is parsed and dropped.
 fn literal(p: &mut Parser<'_>) -> ParseResult<EnumLiteral> {
     let name = p.ident("the name of a literal")?;
     let (description, _) = modification::comment(p)?;
     Ok(EnumLiteral { name, description })
 }
 
-/// `der(f, x, y)`.
+/// A partial derivative of a function: `der(f, x, y)` (Modelica 3.6, section 12.7.2). At least one input is required.
 fn derivative(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;

@@ -1,4 +1,7 @@
-//! Elements of a class: imports, `extends`, components.
+//! Elements of a class: imports, `extends` clauses, nested classes and components.
+//! `body` calls [`element`] for each one. Productions: Modelica 3.6, appendix A.2.3 and A.2.4.
+//!
+//! Prefixes in the wrong order are reported and accepted, so that the declaration itself is in the tree.
 
 use super::modification::ModificationContext;
 use super::{ParseResult, Parser, class, expr, is_class_keyword, modification};
@@ -9,22 +12,29 @@ use crate::ast::{
 use crate::diag::Span;
 use crate::token::TokenKind;
 
-/// What all components of one clause share.
+/// What all components of one component clause share: `parameter Real[3] a, b = 1` has two components.
 struct ComponentClause {
+    /// Where the clause begins.
     start: Span,
+    /// `final`, `inner`, `replaceable` and so on.
     prefixes: ElementPrefixes,
+    /// `flow`, `parameter`, `input` and so on.
     prefix: TypePrefix,
+    /// The type.
     class: Path,
+    /// Dimensions after the type name.
     subscripts: Vec<Subscript>,
 }
 
-/// One element, without its semicolon; a clause with several components gives several.
+/// Parses one element without its semicolon and appends it to `elements`.
+/// A component clause gives one element for each component. `protected` is the visibility of the section.
 pub(super) fn element(p: &mut Parser<'_>, protected: bool, elements: &mut Vec<Element>) -> ParseResult<()> {
     let start = p.span();
     let kind = match p.kind() {
         TokenKind::Import => ElementKind::Import(import(p)?),
         TokenKind::Extends => ElementKind::Extends(extends(p)?),
         _ => {
+            // Classes and components share these prefixes; only what follows them shows which it is.
             let prefixes = prefixes(p);
             if !is_class_keyword(p.kind()) {
                 return component_clause(p, start, prefixes, protected, elements);
@@ -38,6 +48,7 @@ pub(super) fn element(p: &mut Parser<'_>, protected: bool, elements: &mut Vec<El
 
 // Imports and extends.
 
+/// An `import` clause. Its comment is parsed and dropped.
 fn import(p: &mut Parser<'_>) -> ParseResult<Import> {
     p.bump();
     if p.at(TokenKind::Ident) && p.peek_kind(1) == TokenKind::Equal {
@@ -49,6 +60,7 @@ fn import(p: &mut Parser<'_>) -> ParseResult<Import> {
     }
     let path = p.path("the name of a class or package")?;
     let import = match p.kind() {
+        // The lexer reads `.*` as one operator, except where blanks stand between its signs.
         TokenKind::DotStar => {
             p.bump();
             Import::All(path)
@@ -72,6 +84,7 @@ fn import(p: &mut Parser<'_>) -> ParseResult<Import> {
     Ok(import)
 }
 
+/// The names in braces of `import A.{b, c}`.
 fn import_list(p: &mut Parser<'_>) -> ParseResult<Vec<Ident>> {
     let opened = p.span();
     p.bump();
@@ -83,6 +96,7 @@ fn import_list(p: &mut Parser<'_>) -> ParseResult<Vec<Ident>> {
     Ok(names)
 }
 
+/// An `extends` clause. Its annotation is parsed and dropped.
 fn extends(p: &mut Parser<'_>) -> ParseResult<ExtendsClause> {
     p.bump();
     let base = p.path("the name of a class")?;
@@ -93,9 +107,10 @@ fn extends(p: &mut Parser<'_>) -> ParseResult<ExtendsClause> {
 
 // Prefixes.
 
-/// `redeclare final inner outer replaceable`, which have this order.
+/// The prefixes `redeclare final inner outer replaceable`, which the grammar has in this order.
 fn prefixes(p: &mut Parser<'_>) -> ElementPrefixes {
     let mut prefixes = ElementPrefixes::default();
+    // Ranks give the order; equal ranks exclude each other.
     let mut last = 0;
     loop {
         let (rank, flag) = match p.kind() {
@@ -113,7 +128,7 @@ fn prefixes(p: &mut Parser<'_>) -> ElementPrefixes {
     }
 }
 
-/// `flow parameter input` and the like, which have this order.
+/// The type prefixes: `flow` or `stream`, then variability, then causality. The grammar has them in this order.
 pub(super) fn type_prefix(p: &mut Parser<'_>) -> TypePrefix {
     let mut prefix = TypePrefix::default();
     let mut last = 0;
@@ -131,6 +146,7 @@ pub(super) fn type_prefix(p: &mut Parser<'_>) -> TypePrefix {
     }
 }
 
+/// Reports a prefix whose rank is not above that of the one before it.
 fn check_order(p: &mut Parser<'_>, rank: u8, last: u8) {
     if rank > last {
         return;
@@ -147,6 +163,8 @@ fn check_order(p: &mut Parser<'_>, rank: u8, last: u8) {
 
 // Components.
 
+/// The components of one clause, appended to `elements`; the cursor is behind the prefixes.
+/// The first element's span begins with the clause, those of the others with their names.
 fn component_clause(
     p: &mut Parser<'_>,
     start: Span,
@@ -169,6 +187,7 @@ fn component_clause(
             break;
         }
     }
+    // The constraint of a replaceable component stands behind all of them, and may bring a description.
     if let Some(constraint) = modification::constraint(p)? {
         let (description, annotation) = modification::comment(p)?;
         constrain(&mut elements[first..], &constraint, description.as_deref(), annotation.as_ref());
@@ -176,7 +195,7 @@ fn component_clause(
     Ok(())
 }
 
-/// Reports `parameter final Real`, where `final` comes too late.
+/// Reports prefixes after the type prefixes, as in `parameter final Real`, and skips them.
 fn check_late_prefix(p: &mut Parser<'_>) {
     use TokenKind::{Final, Inner, Outer, Redeclare, Replaceable};
     while matches!(p.kind(), Final | Inner | Outer | Redeclare | Replaceable) {
@@ -187,9 +206,11 @@ fn check_late_prefix(p: &mut Parser<'_>) {
     }
 }
 
+/// One component of a clause: name, dimensions, modification, condition and comment.
 fn component(p: &mut Parser<'_>, clause: &ComponentClause) -> ParseResult<ComponentDeclaration> {
     let name = component_name(p)?;
     let mut subscripts = optional_subscripts(p)?;
+    // `Real[3] x[2]` has dimensions `[2, 3]`: those of the name come first (Modelica 3.6, section 10.1).
     subscripts.extend(clause.subscripts.iter().cloned());
     let modification = modification::modification(p)?;
     let condition = if p.eat(TokenKind::If) { Some(expr::expression(p)?) } else { None };
@@ -208,6 +229,10 @@ fn component(p: &mut Parser<'_>, clause: &ComponentClause) -> ParseResult<Compon
     })
 }
 
+/// The name of a component.
+///
+/// # Errors
+/// A sign of an equation in its place gets advice: the keyword `equation` is then probably missing.
 fn component_name(p: &mut Parser<'_>) -> ParseResult<Ident> {
     if matches!(p.kind(), TokenKind::Equal | TokenKind::LeftParen | TokenKind::Dot) {
         let help = "equations stand after the keyword `equation`";
@@ -219,11 +244,12 @@ fn component_name(p: &mut Parser<'_>) -> ParseResult<Ident> {
     p.ident("the name of a component")
 }
 
-/// `[3, :]`, if there.
+/// Dimensions in square brackets such as `[3, :]`. Empty if there are none.
 pub(super) fn optional_subscripts(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     if p.at(TokenKind::LeftBracket) { expr::subscripts(p) } else { Ok(Vec::new()) }
 }
 
+/// Sets the flag or value of a type prefix that a keyword stands for.
 fn set_prefix(prefix: &mut TypePrefix, kind: TokenKind) {
     match kind {
         TokenKind::Flow => prefix.flow = true,
@@ -237,7 +263,8 @@ fn set_prefix(prefix: &mut TypePrefix, kind: TokenKind) {
     }
 }
 
-/// Gives the components of a clause its constraint, and its description and annotation to those without one.
+/// Gives all components of a clause the constraint.
+/// The description and annotation after it go to components without their own.
 fn constrain(
     elements: &mut [Element],
     constraint: &ConstrainingClause,

@@ -1,14 +1,18 @@
-//! Equations, and the blocks `if`, `for` and `when` that equations and statements share.
+//! Equations, and the blocks `if`, `for`, `while` and `when` that equations and statements share.
+//! Each block function takes the parser of its items, [`equation`] or `statement`.
+//!
+//! A block always gives a tree: errors in its header do not keep the body from being read, and an `end` that is
+//! missing or wrong is reported by [`close_block`]. Productions: Modelica 3.6, appendix A.2.6.
 
 use super::{OpenBlock, OpenBlockKind, ParseAbort, ParseResult, Parser, expr, modification};
 use crate::ast::{BinaryOp, Equation, EquationKind, Expr, ExprKind, ForIndex};
 use crate::diag::Span;
 use crate::token::TokenKind;
 
-/// Conditions with what they guard.
+/// The branches of a block in order: each condition with the items that it guards.
 pub(super) type ConditionalBranches<T> = Vec<(Expr, Vec<T>)>;
 
-/// One equation, without its semicolon.
+/// One equation with its description, without its semicolon. The span covers the equation alone.
 pub(super) fn equation(p: &mut Parser<'_>) -> ParseResult<Equation> {
     let start = p.span();
     let kind = p.nested(|p| match p.kind() {
@@ -23,17 +27,20 @@ pub(super) fn equation(p: &mut Parser<'_>) -> ParseResult<Equation> {
     Ok(Equation { kind, description, span })
 }
 
+/// An if-equation. It may have no `else`.
 fn if_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let (branches, otherwise) = if_block(p, equation)?;
     Ok(EquationKind::If { branches, otherwise })
 }
 
+/// A for-equation.
 fn for_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let (iterators, body) = for_block(p, equation)?;
     Ok(EquationKind::For { iterators, body })
 }
 
-/// `a = b` or a call.
+/// `a = b`, or a call such as `assert(...)`.
+/// `:=` is reported and read as `=`.
 fn plain_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let left = expr::simple_expression(p)?;
     match p.kind() {
@@ -48,9 +55,14 @@ fn plain_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     Ok(EquationKind::Equal(left, expr::expression(p)?))
 }
 
+/// An equation in which no `=` follows the left side: a call, or a mistake.
+///
+/// # Errors
+/// Reports the missing `=`, unless the text shows which sign was meant.
 fn equation_without_sign(p: &mut Parser<'_>, left: Expr) -> ParseResult<EquationKind> {
     match left.kind {
         ExprKind::Call { .. } => Ok(EquationKind::Call(left)),
+        // `==` has joined both sides to one expression; without brackets it was meant as the sign of the equation.
         ExprKind::Binary(BinaryOp::Eq, a, b) if !is_bracketed(left.span, a.span) => {
             blame_comparison(p, a.span, b.span, "=", "`==` compares; an equation has a single `=`");
             Ok(EquationKind::Equal(*a, *b))
@@ -64,12 +76,13 @@ fn equation_without_sign(p: &mut Parser<'_>, left: Expr) -> ParseResult<Equation
     }
 }
 
-/// Whether an expression begins before its first operand.
+/// True if an expression begins before its first operand, which means that brackets enclose it.
 fn is_bracketed(whole: Span, first: Span) -> bool {
     whole.start < first.start
 }
 
-/// Reports `==` between two operands where a sign of assignment or equality is due.
+/// Reports `==` between two operands where `due` (`=` or `:=`) should stand.
+/// `left` and `right` are the places of the operands; the sign is looked for between them.
 pub(super) fn blame_comparison(p: &mut Parser<'_>, left: Span, right: Span, due: &str, help: &str) {
     let gap = p.text.get(left.end as usize..right.start as usize).unwrap_or("");
     let offset = gap.find("==").unwrap_or(0) as u32;
@@ -78,12 +91,13 @@ pub(super) fn blame_comparison(p: &mut Parser<'_>, left: Span, right: Span, due:
     p.slip_at(place, message, &format!("expected `{due}`"), help);
 }
 
+/// Advice where a declaration such as `Real x` stands in an equation section.
 fn advice_on_equation(p: &Parser<'_>, left: &Expr) -> Option<&'static str> {
     let is_declaration = p.at(TokenKind::Ident) && matches!(left.kind, ExprKind::Reference(_));
     is_declaration.then_some("declarations stand before the keyword `equation`")
 }
 
-/// Where `x <- y` was written, which is a comparison with `-y`.
+/// Recognises an assignment arrow, `x <- y`, which parses as a comparison with `-y`. Gives the place of `<-`.
 pub(super) fn arrow(p: &Parser<'_>, expr: &Expr) -> Option<Span> {
     let ExprKind::Binary(BinaryOp::Lt, left, right) = &expr.kind else { return None };
     let gap = p.text.get(left.span.end as usize..right.span.end as usize)?;
@@ -92,14 +106,16 @@ pub(super) fn arrow(p: &Parser<'_>, expr: &Expr) -> Option<Span> {
     sign.starts_with("<-").then_some(Span { start, end: start + 2, ..left.span })
 }
 
+/// Reports an assignment arrow. `due` is the sign to be written, `rule` says in which section it stands.
 pub(super) fn blame_arrow(p: &mut Parser<'_>, arrow: Span, due: &str, rule: &str) -> ParseAbort {
     let help = format!("`<-` is read as \"less than minus\"; {rule}");
     p.slip_at(arrow, format!("expected `{due}`, found `<-`"), &format!("expected `{due}`"), help)
 }
 
-// Blocks. The cursor is on the first keyword.
+// Blocks. The cursor is on the first keyword of the block.
 
-/// `if ... then ... elseif ... else ... end if`.
+/// An if-block: `if ... then ... elseif ... else ... end if`.
+/// Gives the conditional branches and the items after `else`.
 pub(super) fn if_block<T>(
     p: &mut Parser<'_>,
     item: fn(&mut Parser<'_>) -> ParseResult<T>,
@@ -112,6 +128,7 @@ pub(super) fn if_block<T>(
     }
     let mut otherwise = Vec::new();
     let mut seen_else = false;
+    // Branches after `else` are errors, yet are read as branches, so that their items are checked.
     while matches!(p.kind(), TokenKind::Else | TokenKind::Elseif) {
         check_second_else(p, seen_else);
         seen_else = true;
@@ -127,6 +144,7 @@ pub(super) fn if_block<T>(
     Ok((branches, otherwise))
 }
 
+/// Reports a misspelt `elseif`, such as `elif`.
 fn check_elseif(p: &mut Parser<'_>) {
     if !p.at(TokenKind::Elseif) {
         let word = p.word(p.token());
@@ -134,6 +152,7 @@ fn check_elseif(p: &mut Parser<'_>) {
     }
 }
 
+/// Reports a branch after `else`.
 fn check_second_else(p: &mut Parser<'_>, seen_else: bool) {
     if seen_else {
         let word = p.word(p.token());
@@ -142,7 +161,8 @@ fn check_second_else(p: &mut Parser<'_>, seen_else: bool) {
     }
 }
 
-/// Remembers an `else if` on one line.
+/// Records an `else if` on one line in the open block.
+/// It opens a second `if`, and if an `end if` is missing later, the message names this place.
 fn note_else_if(p: &mut Parser<'_>) {
     if p.at(TokenKind::If) && !p.is_on_new_line() {
         let span = p.span();
@@ -152,7 +172,7 @@ fn note_else_if(p: &mut Parser<'_>) {
     }
 }
 
-/// `when ... then ... elsewhen ... end when`.
+/// A when-block: `when ... then ... elsewhen ... end when`.
 pub(super) fn when_block<T>(
     p: &mut Parser<'_>,
     item: fn(&mut Parser<'_>) -> ParseResult<T>,
@@ -166,7 +186,7 @@ pub(super) fn when_block<T>(
     Ok(branches)
 }
 
-/// `for i in 1:n loop ... end for`.
+/// A for-loop: `for i in 1:n loop ... end for`. After errors in its header it has no iterators.
 pub(super) fn for_block<T>(
     p: &mut Parser<'_>,
     item: fn(&mut Parser<'_>) -> ParseResult<T>,
@@ -180,7 +200,7 @@ pub(super) fn for_block<T>(
     Ok((iterators.unwrap_or_default(), body))
 }
 
-/// `while c loop ... end while`.
+/// A while-loop: `while c loop ... end while`.
 pub(super) fn while_block<T>(
     p: &mut Parser<'_>,
     item: fn(&mut Parser<'_>) -> ParseResult<T>,
@@ -193,13 +213,15 @@ pub(super) fn while_block<T>(
     Ok((condition, body))
 }
 
+/// One branch from its keyword on: condition, `then`, and the items up to the next branch or `end`.
 fn branch<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> ParseResult<T>) -> (Expr, Vec<T>) {
     p.bump();
     let condition = condition(p, TokenKind::Then);
     (condition, p.list(item))
 }
 
-/// A condition and the keyword after it. Errors in it do not keep the body from being read.
+/// A condition and the keyword after it.
+/// A condition that cannot be parsed becomes `ExprKind::Error`, so that the body is read nevertheless.
 fn condition(p: &mut Parser<'_>, keyword: TokenKind) -> Expr {
     let span = p.span();
     let condition = expr::expression(p);
@@ -207,7 +229,9 @@ fn condition(p: &mut Parser<'_>, keyword: TokenKind) -> Expr {
     condition.unwrap_or(Expr { kind: ExprKind::Error, span })
 }
 
-/// `then` or `loop`, which is looked for in the rest of the header if need be.
+/// The keyword that ends the header of a block, `then` or `loop`.
+/// If it is not at the cursor, this is reported (unless the header had an error: `is_fine` is false) and it is
+/// searched.
 fn header_end(p: &mut Parser<'_>, is_fine: bool, keyword: TokenKind) {
     if p.eat(keyword) {
         return;
@@ -220,7 +244,9 @@ fn header_end(p: &mut Parser<'_>, is_fine: bool, keyword: TokenKind) {
     skip_header(p, keyword);
 }
 
+/// Skips the rest of a header that was not understood: to one past `keyword`, or else to the end of the line.
 fn skip_header(p: &mut Parser<'_>, keyword: TokenKind) {
+    // The header reaches to the first semicolon at most; beyond it a keyword belongs to another block.
     let in_header = p.tokens[p.at..].iter().take_while(|token| token.kind != TokenKind::Semicolon);
     let length = in_header.take(MAX_HEADER).position(|token| token.kind == keyword);
     if let Some(length) = length {
@@ -237,11 +263,13 @@ fn skip_header(p: &mut Parser<'_>, keyword: TokenKind) {
 
 // Ends of blocks.
 
+/// Records the block at the cursor as open.
 fn open_block(p: &mut Parser<'_>, kind: OpenBlockKind) {
     p.open.push(OpenBlock { kind, span: p.span(), else_if: None });
 }
 
-/// `end if` and the like; reports what stands there instead.
+/// The `end` of the innermost block, such as `end if`. `keyword` is the word that must follow `end`.
+/// A missing `end`, and one with another word, are reported.
 fn close_block(p: &mut Parser<'_>, keyword: TokenKind) {
     let misspelt = p.eat_misspelt(TokenKind::End);
     let Some(open) = p.open.pop() else { return };
@@ -252,6 +280,7 @@ fn close_block(p: &mut Parser<'_>, keyword: TokenKind) {
         return p.unclosed(open);
     }
     let found = p.peek_kind(1);
+    // An `end` that fits a block or class further out stays for that one.
     if found == keyword {
         p.bump();
     } else if closes_something_else(p, found) {
@@ -265,7 +294,7 @@ fn close_block(p: &mut Parser<'_>, keyword: TokenKind) {
     p.bump();
 }
 
-/// Whether `end` with this word closes a block or class further out.
+/// True if `end` with this word closes another open block, or a class.
 fn closes_something_else(p: &Parser<'_>, word: TokenKind) -> bool {
     let is_open = |kind| p.open.iter().any(|open| open.kind == kind);
     match word {
@@ -278,5 +307,5 @@ fn closes_something_else(p: &Parser<'_>, word: TokenKind) -> bool {
     }
 }
 
-/// How far a misread header is searched for its `then`, in tokens.
+/// The number of tokens in which a header is searched for its `then` or `loop`. It bounds the time on damaged texts.
 const MAX_HEADER: usize = 1000;

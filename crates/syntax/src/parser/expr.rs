@@ -1,14 +1,19 @@
-//! Expressions by recursive descent, but for what stands between operators.
+//! Expressions by recursive descent: if-expressions, ranges, operands, references, calls, subscripts.
+//! What stands between operators is left to [`operator`], which calls [`primary`] for each operand.
+//!
+//! The functions follow the productions `expression`, `simple-expression`, `primary`, `component-reference` and
+//! `function-call-args` of Modelica 3.6, appendix A.2.7.
 
 use super::{ParseResult, Parser, operator};
 use crate::ast::{ComponentReference, Expr, ExprKind, ForIndex, Ident, Path, ReferencePart, Subscript};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::token::TokenKind;
 
-/// Positional and named arguments of a call.
+/// Positional arguments, then named arguments, each in the order of the text.
 type ArgumentLists = (Vec<Expr>, Vec<(Ident, Expr)>);
 
-/// An expression that is the whole text.
+/// Parses a text that is one expression and nothing else.
+/// `None` if no expression could be parsed; errors are in the parser.
 pub fn whole_expression(p: &mut Parser<'_>) -> Option<Expr> {
     let expr = expression(p).ok()?;
     if !p.at(TokenKind::Eof) {
@@ -17,8 +22,9 @@ pub fn whole_expression(p: &mut Parser<'_>) -> Option<Expr> {
     Some(expr)
 }
 
-/// Any expression, if-expressions and ranges included.
+/// The production `expression`: an if-expression, a range, or operands joined by operators.
 pub(super) fn expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
+    // The height of what the caller has parsed so far must survive the inner expression, which starts from zero.
     let outer = std::mem::take(&mut p.height);
     let result = p.nested(|p| match p.kind() {
         TokenKind::If => if_expression(p),
@@ -28,16 +34,19 @@ pub(super) fn expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     result
 }
 
-/// An expression that does not begin with `if`, as on the left of an equation.
+/// The production `simple-expression`: any expression that does not begin with `if`.
+/// The left side of an equation must be one, because `if` begins an if-equation there.
 pub(super) fn simple_expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     p.nested(range_or_value)
 }
 
+/// `a`, `a:b` or `a:step:b`.
 fn range_or_value(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let from = operator::operators(p)?;
     if !p.eat(TokenKind::Colon) {
         return Ok(from);
     }
+    // Only after a second colon is it known whether the second value is the step or the end.
     let second = operator::operators(p)?;
     let (step, to) =
         if p.eat(TokenKind::Colon) { (Some(Box::new(second)), operator::operators(p)?) } else { (None, second) };
@@ -45,6 +54,7 @@ fn range_or_value(p: &mut Parser<'_>) -> ParseResult<Expr> {
     Ok(Expr { kind: ExprKind::Range { from: Box::new(from), step, to: Box::new(to) }, span })
 }
 
+/// `if c then a elseif d then b else e`. The `else` is required, because the expression must have a value.
 fn if_expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     let mut branches = Vec::new();
@@ -65,6 +75,7 @@ fn if_expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     Ok(Expr { kind: ExprKind::If { branches, otherwise }, span: p.since(start) })
 }
 
+/// The `then` of an if-expression, with advice where `=` was written in a condition.
 fn expect_then(p: &mut Parser<'_>) -> ParseResult<()> {
     if p.eat(TokenKind::Then) {
         return Ok(());
@@ -75,6 +86,8 @@ fn expect_then(p: &mut Parser<'_>) -> ParseResult<()> {
 
 // Operands of operators.
 
+/// The production `primary`: one operand, which is a literal, reference, call, array, matrix or bracketed expression.
+/// Sets the parser's `height` to that of the operand.
 pub(super) fn primary(p: &mut Parser<'_>) -> ParseResult<Expr> {
     p.height = 0;
     let span = p.span();
@@ -87,9 +100,12 @@ pub(super) fn primary(p: &mut Parser<'_>) -> ParseResult<Expr> {
         TokenKind::LeftParen => return bracketed(p),
         TokenKind::LeftBrace => return array(p),
         TokenKind::LeftBracket => return matrix(p),
+        // Outside a subscript `end` closes something and is no operand.
         TokenKind::End if p.subscripts > 0 => ExprKind::End,
         TokenKind::Der | TokenKind::Initial | TokenKind::Pure => return keyword_call(p),
         TokenKind::If => {
+            // The grammar allows `if` here only in brackets; the expression is read nevertheless to find further
+            // errors.
             p.slip("an `if` inside an expression needs brackets", "here", "write `(if ... then ... else ...)`");
             return expression(p);
         }
@@ -102,6 +118,8 @@ pub(super) fn primary(p: &mut Parser<'_>) -> ParseResult<Expr> {
     Ok(Expr { kind, span })
 }
 
+/// The number at the cursor, which stays there.
+/// An integer beyond 64 bits becomes a Real; a Real that overflows is reported and becomes infinite.
 fn number(p: &mut Parser<'_>) -> ExprKind {
     let word = p.word(p.token());
     if p.at(TokenKind::Integer)
@@ -117,16 +135,18 @@ fn number(p: &mut Parser<'_>) -> ExprKind {
     ExprKind::Real(value)
 }
 
-/// The value of the string at the cursor, which stays.
+/// The value of the string at the cursor, without quotation marks and with escapes resolved. The cursor stays.
 pub(super) fn string_value(p: &mut Parser<'_>) -> Box<str> {
     let token = p.token();
     let word = p.word(token);
+    // A string that is not closed has no final mark; the lexer has reported it.
     let inner = word.strip_prefix('"').unwrap_or(word);
     let inner = inner.strip_suffix('"').unwrap_or(inner);
     if inner.contains('\\') { unescaped(p, inner, token.start + 1) } else { inner.into() }
 }
 
-/// Resolves the escapes of a string that begins at a byte of the text.
+/// Resolves the escapes of a string without quotation marks.
+/// `start` is the byte of the text at which `inner` begins; messages about unknown escapes need it.
 fn unescaped(p: &mut Parser<'_>, inner: &str, start: u32) -> Box<str> {
     let mut value = String::with_capacity(inner.len());
     let mut characters = inner.char_indices();
@@ -144,6 +164,7 @@ fn unescaped(p: &mut Parser<'_>, inner: &str, start: u32) -> Box<str> {
     value.into()
 }
 
+/// Reports an escape that the language does not define. `start` is the byte of the backslash.
 fn unknown_escape(p: &mut Parser<'_>, escaped: char, start: u32) {
     let span = Span { file: p.file, start, end: start + 1 + escaped.len_utf8() as u32 };
     let diagnostic = Diagnostic::new(Code::Syntax, format!("`\\{escaped}` means nothing in a string"))
@@ -152,7 +173,7 @@ fn unknown_escape(p: &mut Parser<'_>, escaped: char, start: u32) {
     p.report(diagnostic);
 }
 
-/// `(a)`, `(a)[i]` or a list of outputs.
+/// An opening bracket in an expression: `(a)`, an indexed `(a)[i]`, or a list of outputs `(a, , c)`.
 fn bracketed(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     let mut items = output_list(p)?;
@@ -163,6 +184,7 @@ fn bracketed(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let Some(Some(inner)) = items.pop() else {
         return Err(p.unexpected("an expression"));
     };
+    // The brackets are not in the tree, but the span keeps them: messages quote the operand with its brackets.
     let inner = Expr { span, ..inner };
     if !p.at(TokenKind::LeftBracket) {
         return Ok(inner);
@@ -171,7 +193,7 @@ fn bracketed(p: &mut Parser<'_>) -> ParseResult<Expr> {
     Ok(Expr { kind: ExprKind::Index(Box::new(inner), indices), span: p.since(start) })
 }
 
-/// `(a, , c)`; `()` gives no item.
+/// Expressions in brackets of which each may be missing: `(a, , c)`. `()` gives an empty list.
 pub(super) fn output_list(p: &mut Parser<'_>) -> ParseResult<Vec<Option<Expr>>> {
     let opened = p.span();
     p.bump();
@@ -190,7 +212,7 @@ pub(super) fn output_list(p: &mut Parser<'_>) -> ParseResult<Vec<Option<Expr>>> 
     Ok(items)
 }
 
-/// `{a, b}` or `{a for i in 1:n}`.
+/// `{a, b}` or the array comprehension `{a for i in 1:n}`. An empty array is an error (Modelica has no such literal).
 fn array(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let opened = p.span();
     p.bump();
@@ -212,7 +234,7 @@ fn array(p: &mut Parser<'_>) -> ParseResult<Expr> {
     Ok(Expr { kind, span: p.since(opened) })
 }
 
-/// `[a, b; c, d]`.
+/// A matrix, `[a, b; c, d]`: rows separated by semicolons, columns by commas.
 fn matrix(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let opened = p.span();
     p.bump();
@@ -222,6 +244,7 @@ fn matrix(p: &mut Parser<'_>) -> ParseResult<Expr> {
         if !p.eat(TokenKind::Semicolon) {
             break;
         }
+        // A missing `]` would otherwise take the next equations for further rows.
         if p.is_boundary() || looks_like_equation(p) {
             break;
         }
@@ -230,7 +253,8 @@ fn matrix(p: &mut Parser<'_>) -> ParseResult<Expr> {
     Ok(Expr { kind: ExprKind::Matrix(rows), span: p.since(opened) })
 }
 
-/// A line that begins like an equation: the matrix before it is not closed.
+/// True at a line that begins like an equation, where an expression should stand.
+/// The bracket before it is then taken to be unclosed.
 pub(super) fn looks_like_equation(p: &Parser<'_>) -> bool {
     use TokenKind::{Assign, Connect, Equal, For, Ident, If, When};
     let begins = match p.kind() {
@@ -240,7 +264,7 @@ pub(super) fn looks_like_equation(p: &Parser<'_>) -> bool {
     begins && p.is_on_new_line()
 }
 
-/// Expressions separated by commas, at least one.
+/// One or more expressions separated by commas.
 pub(super) fn expressions(p: &mut Parser<'_>) -> ParseResult<Vec<Expr>> {
     let mut items = vec![expression(p)?];
     while p.eat(TokenKind::Comma) {
@@ -251,6 +275,7 @@ pub(super) fn expressions(p: &mut Parser<'_>) -> ParseResult<Vec<Expr>> {
 
 // References and calls.
 
+/// A reference such as `a[i].b`, or a call if `(` follows it.
 fn reference_or_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let reference = reference(p, "an expression")?;
     if p.at(TokenKind::LeftParen) {
@@ -260,7 +285,7 @@ fn reference_or_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
     Ok(Expr { kind: ExprKind::Reference(reference), span })
 }
 
-/// `der(...)`, `initial()`, `pure(...)`.
+/// A call whose function name is a keyword: `der(...)`, `initial()`, `pure(...)`.
 fn keyword_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
     if p.peek_kind(1) != TokenKind::LeftParen {
         return Err(p.unexpected("an expression"));
@@ -271,7 +296,7 @@ fn keyword_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
     call(p, ComponentReference { global: false, parts, span: name.span })
 }
 
-/// `[.] a[i].b`.
+/// The production `component-reference`: `[.] a[i].b`. `what` describes it in the message.
 pub(super) fn reference(p: &mut Parser<'_>, what: &str) -> ParseResult<ComponentReference> {
     let start = p.span();
     let global = p.eat(TokenKind::Dot);
@@ -282,13 +307,14 @@ pub(super) fn reference(p: &mut Parser<'_>, what: &str) -> ParseResult<Component
     Ok(ComponentReference { global, parts, span: p.since(start) })
 }
 
+/// A name with optional subscripts.
 fn reference_part(p: &mut Parser<'_>, what: &str) -> ParseResult<ReferencePart> {
     let name = p.ident(what)?;
     let subscripts = if p.at(TokenKind::LeftBracket) { subscripts(p)? } else { Vec::new() };
     Ok(ReferencePart { name, subscripts })
 }
 
-/// `[i, :, 1:end]`.
+/// Subscripts in square brackets: `[i, :, 1:end]`. Inside, `end` is an operand.
 pub(super) fn subscripts(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     p.subscripts += 1;
     let result = subscript_list(p);
@@ -296,6 +322,7 @@ pub(super) fn subscripts(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     result
 }
 
+/// The list of subscripts from `[` to `]`.
 fn subscript_list(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     let opened = p.span();
     p.bump();
@@ -312,11 +339,12 @@ fn subscript_list(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     Ok(items)
 }
 
-/// The call of a function whose opening bracket is at the cursor.
+/// The arguments of a call, whose opening bracket is at the cursor, or a reduction such as `sum(x for x in v)`.
 fn call(p: &mut Parser<'_>, function: ComponentReference) -> ParseResult<Expr> {
     let (start, opened) = (function.span, p.span());
     p.bump();
     let (mut args, named) = arguments(p)?;
+    // `for` after a single positional argument makes a reduction (Modelica 3.6, section 10.3.4).
     let kind = if p.at(TokenKind::For) && args.len() == 1 && named.is_empty() {
         let body = Box::new(args.swap_remove(0));
         let iterators = comprehension_iterators(p)?;
@@ -328,6 +356,8 @@ fn call(p: &mut Parser<'_>, function: ComponentReference) -> ParseResult<Expr> {
     Ok(Expr { kind, span: p.since(start) })
 }
 
+/// The arguments of a call up to the closing bracket, which stays.
+/// A positional argument after a named one is reported and kept.
 fn arguments(p: &mut Parser<'_>) -> ParseResult<ArgumentLists> {
     let (mut args, mut named) = (Vec::new(), Vec::new());
     if p.at(TokenKind::RightParen) {
@@ -349,21 +379,24 @@ fn arguments(p: &mut Parser<'_>) -> ParseResult<ArgumentLists> {
     }
 }
 
+/// True at `name =`, which begins a named argument.
 fn at_named(p: &Parser<'_>) -> bool {
     p.at(TokenKind::Ident) && p.peek_kind(1) == TokenKind::Equal
 }
 
+/// `name = value`.
 fn named_argument(p: &mut Parser<'_>) -> ParseResult<(Ident, Expr)> {
     let name = p.ident("the name of an argument")?;
     p.expect(TokenKind::Equal)?;
     Ok((name, argument(p)?))
 }
 
+/// The value of an argument: an expression, or a function with some of its inputs given.
 fn argument(p: &mut Parser<'_>) -> ParseResult<Expr> {
     if p.at(TokenKind::Function) { p.nested(partial_application) } else { expression(p) }
 }
 
-/// `function f(a = 1)`.
+/// A function as an argument, with some inputs given: `function f(a = 1)` (Modelica 3.6, section 12.4.2.1).
 fn partial_application(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     p.bump();
@@ -380,12 +413,14 @@ fn partial_application(p: &mut Parser<'_>) -> ParseResult<Expr> {
     Ok(Expr { kind: ExprKind::PartialApplication { function, named }, span: p.since(start) })
 }
 
+/// The iterators after `for` in a reduction or array comprehension; the cursor is on `for`.
 fn comprehension_iterators(p: &mut Parser<'_>) -> ParseResult<Vec<ForIndex>> {
     p.bump();
     iterators(p)
 }
 
-/// `i in 1:n, j`.
+/// Iterators of a loop or comprehension, outermost first: `i in 1:n, j`.
+/// An iterator without `in` has no range; it is deduced from how the name indexes arrays.
 pub(super) fn iterators(p: &mut Parser<'_>) -> ParseResult<Vec<ForIndex>> {
     let mut iterators = Vec::new();
     loop {
@@ -402,7 +437,7 @@ pub(super) fn iterators(p: &mut Parser<'_>) -> ParseResult<Vec<ForIndex>> {
     }
 }
 
-/// The character that a backslash and a letter stand for.
+/// The character that an escape sequence stands for. `None` if the language does not define it.
 fn escape_value(escaped: char) -> Option<char> {
     Some(match escaped {
         '\'' | '"' | '?' | '\\' => escaped,

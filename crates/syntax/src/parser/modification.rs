@@ -1,4 +1,6 @@
-//! Modifications: `(start = 1, redeclare model M = N) = 3`, annotations and descriptions.
+//! Modifications such as `(start = 1, redeclare model M = N) = 3`, annotations and descriptions.
+//! Declarations, `extends` clauses, short classes and constraints call these functions.
+//! Productions: Modelica 3.6, appendix A.2.5; the rules for merging modifiers (section 7.2) are left to `model`.
 
 use super::{ParseResult, Parser, class, element, expr, is_class_keyword};
 use crate::ast::{
@@ -7,16 +9,17 @@ use crate::ast::{
 };
 use crate::token::TokenKind;
 
-/// Where a modification stands decides what it may hold.
+/// The construct that a modification belongs to, which decides what it may hold.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum ModificationContext {
-    /// After `extends B`, where `break` takes elements out.
+    /// After `extends B`, where `break` removes inherited elements (Modelica 3.6, section 7.4).
     Extends,
     /// Everywhere else.
     Elsewhere,
 }
 
-/// `(...) = value`, `= value` or `:= value`, if there.
+/// A modification of a component: `(...) = value`, `= value` or `:= value`.
+/// `None` if there is neither a bracket nor a value. `==` is reported and read as `=`.
 pub(super) fn modification(p: &mut Parser<'_>) -> ParseResult<Option<Modification>> {
     let with_arguments = p.at(TokenKind::LeftParen);
     let arguments = if with_arguments { class_modification(p, ModificationContext::Elsewhere)? } else { Vec::new() };
@@ -32,13 +35,17 @@ pub(super) fn modification(p: &mut Parser<'_>) -> ParseResult<Option<Modificatio
         return Ok(with_arguments.then(|| Modification { arguments, ..Modification::default() }));
     }
     p.bump();
+    // `= break` removes a binding that the component would inherit.
     if p.eat(TokenKind::Break) {
         return Ok(Some(Modification { arguments, value: None, break_value: true }));
     }
     Ok(Some(Modification { arguments, value: Some(expr::expression(p)?), break_value: false }))
 }
 
-/// `(argument, ...)`; an argument that fails is left out.
+/// The arguments in brackets of a modification; the cursor is on `(`.
+///
+/// # Errors
+/// The first argument that cannot be parsed ends the list.
 pub(super) fn class_modification(
     p: &mut Parser<'_>,
     place: ModificationContext,
@@ -56,11 +63,13 @@ pub(super) fn class_modification(
     Ok(arguments)
 }
 
+/// One argument of a modification, at its own nesting depth.
 fn argument_of_modification(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<ModificationArgument> {
     // Counts twice, as it takes more stack than other nesting.
     p.nested(|p| p.nested(|p| bare_argument(p, place)))
 }
 
+/// One argument: `break ...`, a redeclaration, or the modification of an element.
 fn bare_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<ModificationArgument> {
     let start = p.span();
     if p.at(TokenKind::Break) {
@@ -70,6 +79,7 @@ fn bare_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<
     let mut redeclare = p.eat(TokenKind::Redeclare);
     let each = p.eat(TokenKind::Each);
     let final_ = p.eat(TokenKind::Final);
+    // Read in the wrong order as well; `late_redeclare` has reported it.
     redeclare |= late_redeclare(p);
     let replaceable = p.eat(TokenKind::Replaceable);
     let kind = if redeclare || replaceable {
@@ -80,7 +90,7 @@ fn bare_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<
     Ok(ModificationArgument { each, final_, kind, span: p.since(start) })
 }
 
-/// Reports `each redeclare`, where `redeclare` comes too late.
+/// Reports `redeclare` after `each` or `final`. True if it stands there; it is then read like one in its place.
 fn late_redeclare(p: &mut Parser<'_>) -> bool {
     let is_late = p.at(TokenKind::Redeclare);
     if is_late {
@@ -92,7 +102,10 @@ fn late_redeclare(p: &mut Parser<'_>) -> bool {
     is_late
 }
 
-/// `break name` or `break connect(a, b)`.
+/// `break name` or `break connect(a, b)`, which removes an element or a connection from a base class.
+///
+/// # Errors
+/// Reports `break` outside an `extends` clause.
 fn break_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<ModificationArgumentKind> {
     if place == ModificationContext::Elsewhere {
         let help = "`break` takes an inherited element out: `extends B(break c)`";
@@ -106,7 +119,7 @@ fn break_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult
     Ok(ModificationArgumentKind::BreakConnect(Box::new(a), Box::new(b)))
 }
 
-/// `(a, b)` after `connect`, which is at the cursor.
+/// The two connectors of `connect(a, b)`; the cursor is on `connect`.
 pub(super) fn connect_arguments(p: &mut Parser<'_>) -> ParseResult<(Expr, Expr)> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;
@@ -117,12 +130,17 @@ pub(super) fn connect_arguments(p: &mut Parser<'_>) -> ParseResult<(Expr, Expr)>
     Ok((a, b))
 }
 
+/// One argument of `connect`, which must be a component reference.
 fn connector(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let reference = expr::reference(p, "the name of a connector")?;
     let span = reference.span;
     Ok(Expr { kind: ExprKind::Reference(reference), span })
 }
 
+/// `a.b(...) = value "text"`.
+///
+/// # Errors
+/// Reports a subscripted name, which the grammar does not allow here, and a name without anything to change.
 fn element_modification(p: &mut Parser<'_>) -> ParseResult<ModificationArgumentKind> {
     let path = p.path("the name of an attribute or element")?;
     if p.at(TokenKind::LeftBracket) {
@@ -130,6 +148,7 @@ fn element_modification(p: &mut Parser<'_>) -> ParseResult<ModificationArgumentK
         return Err(p.unexpected_with("`=` or `(`", Some(help)));
     }
     let modification = modification(p)?;
+    // A name with nothing to change is accepted where the argument ends, as `(fixed)` or `(x "text")`.
     let ends = matches!(p.kind(), TokenKind::String | TokenKind::Comma | TokenKind::RightParen);
     if modification.is_none() && !ends {
         return Err(p.unexpected("`=` or `(`"));
@@ -137,7 +156,7 @@ fn element_modification(p: &mut Parser<'_>) -> ParseResult<ModificationArgumentK
     Ok(ModificationArgumentKind::Modify { path, modification, description: description(p) })
 }
 
-/// What stands after `redeclare` or `replaceable` in a modification.
+/// What follows `redeclare` or `replaceable` in a modification: a class or a component.
 fn redeclaration(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<ModificationArgumentKind> {
     if is_class_keyword(p.kind()) {
         return Ok(ModificationArgumentKind::Class(redeclared_class(p, prefixes)?));
@@ -145,6 +164,7 @@ fn redeclaration(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<M
     Ok(ModificationArgumentKind::Component(redeclared_component(p, prefixes)?))
 }
 
+/// A redeclared class. The grammar allows the short form only; a long one is reported and kept.
 fn redeclared_class(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let start = p.token();
     let mut class = class::class(p, prefixes)?;
@@ -160,11 +180,13 @@ fn redeclared_class(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResul
     Ok(class)
 }
 
+/// A redeclared component. It has no condition, and a constraint only if it is replaceable.
 fn redeclared_component(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<ComponentDeclaration>> {
     let prefix = element::type_prefix(p);
     let class = p.path("a type")?;
     let of_type = element::optional_subscripts(p)?;
     let name = p.ident("the name of the component")?;
+    // Dimensions of the name come before those of the type, as in declarations.
     let mut subscripts = element::optional_subscripts(p)?;
     subscripts.extend(of_type);
     let modification = modification(p)?;
@@ -185,7 +207,7 @@ fn redeclared_component(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseR
     }))
 }
 
-/// `constrainedby T(...)`, if there.
+/// The constraint of a replaceable element, `constrainedby T(...)`. `None` if there is none.
 pub(super) fn constraint(p: &mut Parser<'_>) -> ParseResult<Option<ConstrainingClause>> {
     if !p.eat(TokenKind::Constrainedby) {
         return Ok(None);
@@ -194,7 +216,7 @@ pub(super) fn constraint(p: &mut Parser<'_>) -> ParseResult<Option<ConstrainingC
     Ok(Some(ConstrainingClause { path, modification: optional_class_modification(p, ModificationContext::Elsewhere)? }))
 }
 
-/// `(...)` without a value, if there.
+/// The arguments in brackets where no value may follow. `None` without a bracket.
 pub(super) fn optional_class_modification(
     p: &mut Parser<'_>,
     place: ModificationContext,
@@ -206,7 +228,7 @@ pub(super) fn optional_class_modification(
     Ok(Some(Modification { arguments, ..Modification::default() }))
 }
 
-/// `"text" + "text"`, if there.
+/// A description string: string literals joined by `+`, as one text. `None` if there is none.
 pub(super) fn description(p: &mut Parser<'_>) -> Option<Box<str>> {
     if !p.at(TokenKind::String) {
         return None;
@@ -222,7 +244,10 @@ pub(super) fn description(p: &mut Parser<'_>) -> Option<Box<str>> {
     Some(text)
 }
 
-/// `annotation(...)`, if there.
+/// `annotation(...)`. `None` if there is none.
+///
+/// # Errors
+/// Reports the keyword without a bracket after it.
 pub(super) fn annotation(p: &mut Parser<'_>) -> ParseResult<Option<Modification>> {
     if !p.eat(TokenKind::Annotation) {
         return Ok(None);
@@ -233,7 +258,7 @@ pub(super) fn annotation(p: &mut Parser<'_>) -> ParseResult<Option<Modification>
     optional_class_modification(p, ModificationContext::Elsewhere)
 }
 
-/// A description and an annotation, if there.
+/// The production `comment`: a description and an annotation, each optional.
 pub(super) fn comment(p: &mut Parser<'_>) -> ParseResult<(Option<Box<str>>, Option<Modification>)> {
     Ok((description(p), annotation(p)?))
 }

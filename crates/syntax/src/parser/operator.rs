@@ -1,6 +1,8 @@
-//! Operands joined by operators, by their binding strength.
+//! Operands joined by operators, parsed by operator precedence with explicit stacks (shunting-yard).
+//! The precedences are those of Modelica 3.6, section 3.2.
 //!
-//! Operators wait on a stack of the parser's own instead of the call stack, which deep brackets would exhaust.
+//! Operators and operands wait on stacks of the parser instead of the call stack, which deep brackets would exhaust.
+//! Nested expressions share the stacks; each works above the height at which it began.
 
 use super::report::shortened;
 use super::{MAX_HEIGHT, ParseAbort, ParseResult, Parser, expr};
@@ -8,7 +10,7 @@ use crate::ast::{BinaryOp, Expr, ExprKind, UnaryOp};
 use crate::diag::Span;
 use crate::token::TokenKind;
 
-// Binding strength. Relations and powers do not chain; a sign stands only before a whole sum.
+// Precedence, weakest first. Relations and powers are not associative; a sign applies to the first term of a sum.
 const OR: u8 = 1;
 const AND: u8 = 2;
 const NOT: u8 = 3;
@@ -17,23 +19,28 @@ const SUM: u8 = 5;
 const PRODUCT: u8 = 6;
 const POWER: u8 = 7;
 
-/// An operator whose right operand is not complete.
+/// An operator whose right operand is not complete yet.
 #[derive(Clone, Copy)]
 pub(super) enum PendingOperator {
+    /// A sign or `not` before its operand.
     Prefix {
+        /// Which operator it is.
         op: UnaryOp,
+        /// Its place.
         sign: Span,
-        /// The operator directly before, if it binds too strongly for this one to follow.
+        /// The operator directly before, if the grammar does not allow this prefix to follow it: the `*` of `a * -b`.
         after: Option<Span>,
     },
+    /// An operator between two operands, with its precedence.
     Infix(BinaryOp, u8),
 }
 
-/// An operand with the height of its tree.
+/// An operand, and the height of its tree in operators and nested expressions.
 pub(super) type ParserOperand = (Expr, u32);
 
-/// Operands and operators as far as they go.
+/// Parses operands joined by operators, up to the first token that is no operator.
 pub(super) fn operators(p: &mut Parser<'_>) -> ParseResult<Expr> {
+    // An abandoned expression must leave the stacks as it found them: the enclosing one uses them too.
     let (pending, operands) = (p.pending.len(), p.operands.len());
     let result = operators_above(p, pending);
     if result.is_err() {
@@ -43,11 +50,14 @@ pub(super) fn operators(p: &mut Parser<'_>) -> ParseResult<Expr> {
     result
 }
 
+/// The loop of the algorithm: prefixes, an operand, and an operator, until none follows.
+/// `base` is the height of the operator stack below which other expressions wait.
 fn operators_above(p: &mut Parser<'_>, base: usize) -> ParseResult<Expr> {
     loop {
         prefixes_of_operand(p, base);
         let operand = expr::primary(p)?;
         p.operands.push((operand, p.height));
+        // What waits and binds at least as strongly is complete before the new operator is pushed.
         let Some((op, strength)) = infix(p.kind()) else { break };
         check_foreign(p);
         reduce(p, base, strength)?;
@@ -60,12 +70,15 @@ fn operators_above(p: &mut Parser<'_>, base: usize) -> ParseResult<Expr> {
     Ok(expr)
 }
 
+/// Pushes the signs and `not` before an operand.
 fn prefixes_of_operand(p: &mut Parser<'_>, base: usize) {
     while let Some(op) = prefix(p.kind()) {
         if p.at(TokenKind::Bang) {
             p.slip("expected `not`, found `!`", "not a Modelica operator", "write `not`");
         }
+        // In the grammar a sign stands at the level of sums and `not` at that of logical factors.
         let limit = if op == UnaryOp::Not { NOT } else { SUM };
+        // The message needs the operand too, so that it is only noted here and reported when the operand is complete.
         let least = p.pending[base..].last().map_or(OR, PendingOperator::least);
         let after = (least > limit).then(|| p.span_of(p.previous()));
         p.pending.push(PendingOperator::Prefix { op, sign: p.span(), after });
@@ -73,7 +86,8 @@ fn prefixes_of_operand(p: &mut Parser<'_>, base: usize) {
     }
 }
 
-/// Completes the waiting operators that bind at least as strongly as the one that comes.
+/// Completes the waiting operators, down to `base`, whose precedence is at least `strength`.
+/// With `strength` 0 all are completed.
 fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> ParseResult<()> {
     while p.pending.len() > base
         && let Some(&top) = p.pending.last()
@@ -83,6 +97,7 @@ fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> ParseResult<()> {
         match top {
             PendingOperator::Prefix { op, sign, after } => complete_prefix(p, op, sign, after)?,
             PendingOperator::Infix(op, own) => {
+                // `a < b < c` and `a^b^c` have no meaning in the grammar; they are reported and parsed from the left.
                 if own == strength && matches!(own, RELATION | POWER) {
                     blame_chain(p);
                 }
@@ -93,6 +108,7 @@ fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> ParseResult<()> {
     Ok(())
 }
 
+/// Takes an operand from the stack and puts it back with the prefix applied.
 fn complete_prefix(p: &mut Parser<'_>, op: UnaryOp, sign: Span, after: Option<Span>) -> ParseResult<()> {
     let (operand, height) = p.operands.pop().ok_or(ParseAbort)?;
     if let Some(after) = after {
@@ -102,6 +118,7 @@ fn complete_prefix(p: &mut Parser<'_>, op: UnaryOp, sign: Span, after: Option<Sp
     push_operand(p, ExprKind::Unary(op, Box::new(operand)), span, height)
 }
 
+/// Takes two operands from the stack and puts them back joined.
 fn complete_infix(p: &mut Parser<'_>, op: BinaryOp) -> ParseResult<()> {
     let (right, right_height) = p.operands.pop().ok_or(ParseAbort)?;
     let (left, left_height) = p.operands.pop().ok_or(ParseAbort)?;
@@ -110,6 +127,10 @@ fn complete_infix(p: &mut Parser<'_>, op: BinaryOp) -> ParseResult<()> {
     push_operand(p, kind, span, left_height.max(right_height))
 }
 
+/// Pushes an operator's result. `height` is that of its highest operand.
+///
+/// # Errors
+/// Reports E004 if the tree is higher than [`MAX_HEIGHT`].
 fn push_operand(p: &mut Parser<'_>, kind: ExprKind, span: Span, height: u32) -> ParseResult<()> {
     if height >= MAX_HEIGHT {
         return Err(p.too_deep(&format!("an expression with more than {MAX_HEIGHT} operators in a row")));
@@ -120,7 +141,7 @@ fn push_operand(p: &mut Parser<'_>, kind: ExprKind, span: Span, height: u32) -> 
 
 // Slips.
 
-/// Reports an operator of other languages.
+/// Reports an operator of another language, which is then parsed as its Modelica equivalent.
 fn check_foreign(p: &mut Parser<'_>) {
     let right = match p.kind() {
         TokenKind::AndAnd => "and",
@@ -133,7 +154,7 @@ fn check_foreign(p: &mut Parser<'_>) {
     p.slip(message, "not a Modelica operator", format!("write `{right}`"));
 }
 
-/// Reports a second operator of a kind that does not chain.
+/// Reports a second relation or power in a row; the cursor is on the operator that comes second.
 fn blame_chain(p: &mut Parser<'_>) {
     let word = p.word(p.token());
     if matches!(p.kind(), TokenKind::Caret | TokenKind::DotCaret | TokenKind::StarStar) {
@@ -145,7 +166,8 @@ fn blame_chain(p: &mut Parser<'_>) {
     }
 }
 
-/// Reports a sign or `not` directly after an operator that binds more strongly.
+/// Reports a sign or `not` directly after an operator that binds more strongly, as in `a * -b`.
+/// The help shows the operand in brackets, shortened to one line.
 fn blame_prefix(p: &mut Parser<'_>, before: Span, sign: Span, operand: Span) {
     let words = |from: Span, to: Span| p.text.get(from.start as usize..to.end as usize).unwrap_or("");
     let (before, sign_word) = (words(before, before), words(sign, sign));
@@ -155,7 +177,7 @@ fn blame_prefix(p: &mut Parser<'_>, before: Span, sign: Span, operand: Span) {
 }
 
 impl PendingOperator {
-    /// An operator that comes must bind more strongly to take the operand from this one.
+    /// The precedence of the operator. An operator that comes must bind more strongly to take the operand from it.
     fn strength(&self) -> u8 {
         match self {
             PendingOperator::Prefix { op: UnaryOp::Not, .. } => NOT,
@@ -164,7 +186,7 @@ impl PendingOperator {
         }
     }
 
-    /// The least strength of what may follow.
+    /// The least precedence of a prefix operator that may directly follow this one.
     fn least(&self) -> u8 {
         match self {
             PendingOperator::Prefix { op: UnaryOp::Not, .. } => RELATION,
@@ -174,6 +196,7 @@ impl PendingOperator {
     }
 }
 
+/// The prefix operator that a token is. `!` counts as `not`; the caller reports it.
 fn prefix(kind: TokenKind) -> Option<UnaryOp> {
     Some(match kind {
         TokenKind::Plus => UnaryOp::Plus,
@@ -185,6 +208,8 @@ fn prefix(kind: TokenKind) -> Option<UnaryOp> {
     })
 }
 
+/// The infix operator that a token is, with its precedence.
+/// Operators of other languages are included; [`check_foreign`] reports them.
 fn infix(kind: TokenKind) -> Option<(BinaryOp, u8)> {
     Some(match kind {
         TokenKind::Or | TokenKind::OrOr => (BinaryOp::Or, OR),

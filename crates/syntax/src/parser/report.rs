@@ -1,13 +1,17 @@
-//! The messages of the parser: what was expected, what was found, and the slip it probably is.
+//! The messages of the parser: what was expected, what was found, and which mistake it probably is.
+//! All functions that parse report through these methods.
+//!
+//! One mistake often makes several tokens unexpected. [`Parser::report`] therefore drops errors that follow from an
+//! earlier one, and a mistake that is recognised (a "slip") is reported and parsed as what was meant.
 
 use super::{OpenBlock, OpenBlockKind, ParseAbort, ParseResult, Parser, expr};
 use crate::diag::{Code, Diagnostic, Span, nearest};
 use crate::token::{Token, TokenKind};
 
-/// No more errors than this are reported for one file.
+/// The largest number of errors reported for one file. The rest is dropped.
 const MAX_ERRORS: usize = 100;
 
-/// The keywords that begin most files.
+/// The keywords that begin most files, as candidates for "did you mean".
 const CLASS_WORDS: &[&str] =
     &["model", "package", "block", "connector", "record", "function", "type", "class", "within", "partial"];
 
@@ -15,19 +19,21 @@ const CLASS_WORDS: &[&str] =
 const MAX_QUOTED: usize = 40;
 
 impl Parser<'_> {
-    /// Keeps an error at the current token, unless it follows from one already reported.
+    /// Records an error at the current token, unless it follows from one already reported.
+    // At the end of a truncated text every construct looks unclosed; only the lexer's error is real.
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
         let follows = self.blamed == Some(self.at)
             || self.halted
             || (self.truncated && self.at(TokenKind::Eof))
             || self.diagnostics.len() >= MAX_ERRORS;
+        // A dropped error also marks its token: the next one at the same token follows from it too.
         self.blamed = Some(self.at);
         if !follows {
             self.diagnostics.push(diagnostic);
         }
     }
 
-    /// Keeps an error about an `end`, unless another one in the same class came before.
+    /// Records an error about an `end`, unless the same class already had one.
     pub(super) fn report_end(&mut self, diagnostic: Diagnostic) {
         if !self.misnested {
             self.report(diagnostic);
@@ -35,12 +41,12 @@ impl Parser<'_> {
         self.misnested = true;
     }
 
-    /// Reports a slip at the current token, after which the parser knows how to go on.
+    /// Reports a recognised mistake at the current token; the parser continues as if the text were right.
     pub(super) fn slip(&mut self, message: impl Into<String>, label: &str, help: impl Into<String>) {
         self.slip_at(self.span(), message, label, help);
     }
 
-    /// The same at another place.
+    /// The same at another place. The result serves callers that cannot continue.
     pub(super) fn slip_at(
         &mut self,
         place: Span,
@@ -53,12 +59,12 @@ impl Parser<'_> {
         ParseAbort
     }
 
-    /// Reports "expected this, found the current token".
+    /// Reports "expected this, found the current token". `expected` comes with its own backticks.
     pub(super) fn unexpected(&mut self, expected: &str) -> ParseAbort {
         self.unexpected_with(expected, None)
     }
 
-    /// The same with advice, unless the token itself explains what is wrong.
+    /// The same with advice. Advice about the token found takes precedence over `help`.
     pub(super) fn unexpected_with(&mut self, expected: &str, help: Option<&str>) -> ParseAbort {
         let mut diagnostic = self.expected_found(expected);
         let own = self.advice_on_token();
@@ -69,11 +75,13 @@ impl Parser<'_> {
         ParseAbort
     }
 
-    /// The same, unless a semicolon was just guessed: then an operator was missing in truth.
+    /// The same inside an item that may be the rest of the one before it.
+    /// After a guessed semicolon nothing is reported: what is missing is an operator, and the guess was the error.
     pub(super) fn unexpected_in_item(&mut self, expected: &str, help: Option<&str>) -> ParseAbort {
         if self.guessed { ParseAbort } else { self.unexpected_with(expected, help) }
     }
 
+    /// The diagnostic "expected this, found the current token", without help.
     fn expected_found(&self, expected: &str) -> Diagnostic {
         let found = self.describe(self.token());
         let message = match self.kind() {
@@ -83,7 +91,7 @@ impl Parser<'_> {
         Diagnostic::new(Code::Syntax, message).at(self.span(), format!("expected {expected}"))
     }
 
-    /// A token in the user's words.
+    /// A token in the words of a message, such as "the keyword `end`".
     pub(super) fn describe(&self, token: Token) -> String {
         let word = shortened(self.word(token));
         match token.kind {
@@ -96,11 +104,13 @@ impl Parser<'_> {
         }
     }
 
+    /// Advice that follows from the current token alone. `None` if the token tells nothing.
     fn advice_on_token(&self) -> Option<String> {
         let token = self.token();
         let previous = self.previous().kind;
         let advice = match token.kind {
             TokenKind::Unknown => return advice_on_character(self.word(token)),
+            // `200 bar`: a number followed by a name on the same line is nearly always a unit or a missing `*`.
             TokenKind::Ident if is_number(previous) && !self.is_on_new_line() => {
                 "a product is written with `*`; a value stands in the SI unit of its variable, without the unit behind it: 200 bar are `200e5`"
             }
@@ -111,7 +121,7 @@ impl Parser<'_> {
         Some(advice.to_owned())
     }
 
-    /// A single `=` where a condition goes on.
+    /// True at an `=` in a block with a condition, where `==` was probably meant.
     fn blames_comparison(&self) -> bool {
         matches!(
             self.open.last().map(|open| open.kind),
@@ -119,9 +129,11 @@ impl Parser<'_> {
         ) && !self.is_on_new_line()
     }
 
-    /// Whether a keyword stands where a name should, as if it were one; then it is reported and taken for the name.
+    /// Recognises a keyword used as a name, reports it, and returns true: the caller then takes it for the name.
+    /// False if the keyword probably begins something, so that it must not be consumed.
     pub(super) fn keyword_as_name(&mut self, what: &str) -> bool {
         use TokenKind as T;
+        // Only what can follow a name lets the keyword pass for one.
         let follows = self.peek_kind(1);
         let like_name = matches!(follows, T::Semicolon | T::Equal | T::LeftParen | T::LeftBracket | T::Comma)
             || (follows == T::String && !self.is_on_new_line());
@@ -136,7 +148,7 @@ impl Parser<'_> {
         true
     }
 
-    /// Reports and passes over a semicolon where an item could begin.
+    /// Reports and skips a semicolon where an item could begin. False if there is none.
     pub(super) fn stray_semicolon(&mut self) -> bool {
         let is_stray = self.at(TokenKind::Semicolon);
         if is_stray {
@@ -146,7 +158,9 @@ impl Parser<'_> {
         is_stray
     }
 
-    /// Reports a quotation mark in the middle of a string, whose rest is read as words and further strings.
+    /// Reports a quotation mark without backslash inside a string, and skips the rest of the string.
+    /// The lexer ended the string at that mark; its rest became words and further strings.
+    // Each further string that touches a word is another part of the same text.
     pub(super) fn skip_rest_of_string(&mut self) {
         while self.previous().kind == TokenKind::String && self.is_adjacent(0) && self.is_word() {
             let help = "a quotation mark inside a string is written `\\\"`";
@@ -162,12 +176,14 @@ impl Parser<'_> {
         }
     }
 
+    /// True at a name, number or keyword.
     fn is_word(&self) -> bool {
         matches!(self.kind(), TokenKind::Ident | TokenKind::Integer | TokenKind::Real) || self.kind().is_keyword()
     }
 
-    /// Reports something at the top of a file that is no class, perhaps for a misspelt keyword.
+    /// Reports something at the top level of a file that is no class, with the class keyword it resembles.
     pub(super) fn no_class(&mut self) -> ParseAbort {
+        // A stray `end` after other errors is what an earlier mistake left over.
         if self.at(TokenKind::End) && !self.diagnostics.is_empty() {
             return ParseAbort;
         }
@@ -176,10 +192,11 @@ impl Parser<'_> {
         self.unexpected_with("a class such as `model` or `package`", help.as_deref())
     }
 
-    /// What stands after a complete element, equation or statement on the same line.
+    /// Reports what follows a complete element, equation or statement on the same line.
     pub(super) fn unexpected_after_item(&mut self) -> ParseAbort {
         use TokenKind as T;
         let expected = match self.previous().kind {
+            // After a description nothing but the semicolon may follow; after an operand an operator may.
             T::String => "`;`",
             T::Ident | T::Integer | T::Real | T::RightParen | T::RightBracket | T::RightBrace => "an operator or `;`",
             _ => "`;`",
@@ -187,7 +204,8 @@ impl Parser<'_> {
         self.unexpected(expected)
     }
 
-    /// Reports a semicolon missing at the end of the previous token, and goes on as if it stood there.
+    /// Reports a semicolon missing after the previous token; the parser continues as if it stood there.
+    /// The diagnostic carries the fix that inserts it.
     pub(super) fn missing_semicolon(&mut self) {
         let end = self.previous().end;
         let place = Span { file: self.file, start: end, end };
@@ -201,7 +219,11 @@ impl Parser<'_> {
         self.guessed = true;
     }
 
-    /// The closing bracket of what was opened at a place.
+    /// The closing bracket of what was opened at `opened`, with its place.
+    /// `expected` lists what may stand here, for the message.
+    ///
+    /// # Errors
+    /// Reports the bracket as unclosed if the current token cannot stand inside brackets, else the token as unexpected.
     pub(super) fn close(&mut self, bracket: TokenKind, opened: Span, expected: &str) -> ParseResult<Span> {
         let span = self.span();
         if self.eat(bracket) {
@@ -221,14 +243,15 @@ impl Parser<'_> {
         Err(ParseAbort)
     }
 
-    /// Whether a token can only stand outside the brackets we are in.
+    /// True at a token that can only stand outside the current brackets.
     fn ends_brackets(&self) -> bool {
         use TokenKind as T;
         let closing = matches!(self.kind(), T::Semicolon | T::RightParen | T::RightBracket | T::RightBrace);
         closing || self.is_boundary() || expr::looks_like_equation(self) || matches!(self.kind(), T::Then | T::Loop)
     }
 
-    /// Reports a class or block whose `end` is missing at the current token.
+    /// Reports a class or block whose `end` is missing before the current token.
+    /// If it contains an `else if`, the message shows that place: it opened a second `if`.
     pub(super) fn unclosed(&mut self, open: OpenBlock) {
         let (what, closing) = open.words();
         let found = self.found_at_end();
@@ -244,7 +267,7 @@ impl Parser<'_> {
         self.report_end(diagnostic);
     }
 
-    /// The current token, with the word after it if it is `end`.
+    /// The current token for a message, together with the word after it if it is `end`.
     fn found_at_end(&self) -> String {
         let next = self.peek(1);
         match self.kind() {
@@ -255,7 +278,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Reports an `end` whose name or word does not belong to what it closes; the cursor is on `end`.
+    /// Reports an `end` whose name or keyword does not fit what it closes; the cursor is on `end`.
     pub(super) fn wrong_end(&mut self, open: OpenBlock) {
         let (what, closing) = open.words();
         let found = self.found_at_end();
@@ -267,6 +290,7 @@ impl Parser<'_> {
             .at(place, format!("{what} ends here"))
             .at(open.span, "it begins here")
             .help(format!("write `{closing}`"));
+        // The fix replaces the word after `end`; a bare `end;` has no word to replace.
         let word = closing.strip_prefix("end ").filter(|_| place != self.span());
         self.report_end(match word {
             Some(word) => diagnostic.fix(place, word),
@@ -274,7 +298,8 @@ impl Parser<'_> {
         });
     }
 
-    /// A word of other languages at the beginning of an item, with the Modelica word meant.
+    /// Recognises a block word of another language at the beginning of an item, such as `elif` or `endif`.
+    /// Gives the keyword meant and its spelling. `None` outside a block of that kind, where the word may be a name.
     pub(super) fn misspelt_block_word(&self) -> Option<(TokenKind, &'static str)> {
         if !self.at(TokenKind::Ident) {
             return None;
@@ -282,6 +307,7 @@ impl Parser<'_> {
         let top = self.open.last()?.kind;
         let follows = self.peek_kind(1);
         let closes = follows == TokenKind::Semicolon;
+        // A variable may have such a name: `elif = 1` is an equation.
         let goes_on = !matches!(follows, TokenKind::Equal | TokenKind::Assign | TokenKind::Dot | TokenKind::Semicolon);
         match (self.word(self.token()), top) {
             ("elif" | "elsif", OpenBlockKind::If) if goes_on => Some((TokenKind::Elseif, "elseif")),
@@ -293,12 +319,12 @@ impl Parser<'_> {
         }
     }
 
-    /// Whether a misspelt word stands here that means `kind`.
+    /// True if a misspelt word stands here that means `kind`.
     pub(super) fn at_misspelt(&self, kind: TokenKind) -> bool {
         self.misspelt_block_word().is_some_and(|(meant, _)| meant == kind)
     }
 
-    /// Reports and passes over a word that [`Self::misspelt_block_word`] found, if it means `kind`.
+    /// Reports and skips a misspelt word that means `kind`. False if there is none.
     pub(super) fn eat_misspelt(&mut self, kind: TokenKind) -> bool {
         let Some((_, right)) = self.misspelt_block_word().filter(|(meant, _)| *meant == kind) else {
             return false;
@@ -311,7 +337,7 @@ impl Parser<'_> {
 }
 
 impl OpenBlock {
-    /// What it is called, and how it is closed.
+    /// The construct and its closing words for a message, such as "this `if`" and "end if".
     fn words(&self) -> (String, String) {
         let block = |word: &str| (format!("this `{word}`"), format!("end {word}"));
         match self.kind {
@@ -327,11 +353,12 @@ impl OpenBlock {
     }
 }
 
+/// True for number tokens.
 fn is_number(kind: TokenKind) -> bool {
     matches!(kind, TokenKind::Integer | TokenKind::Real)
 }
 
-/// A word short enough for a message of one line.
+/// A word shortened to one line and [`MAX_QUOTED`] characters, with dots where something was cut.
 pub(super) fn shortened(word: &str) -> String {
     let line = word.lines().next().unwrap_or("");
     let mut short: String = line.chars().take(MAX_QUOTED).collect();
@@ -341,6 +368,8 @@ pub(super) fn shortened(word: &str) -> String {
     short
 }
 
+/// Advice for a character outside Modelica's alphabet, such as typographic quotes or operators of other languages.
+/// `None` if there is nothing better to say than that it is unknown.
 fn advice_on_character(word: &str) -> Option<String> {
     let advice = match word {
         "#" => "a comment begins with `//`",

@@ -1,4 +1,5 @@
-//! Statements of algorithm sections.
+//! Statements of algorithm sections and functions. The blocks are those of `equation`, with statements in them.
+//! `body` and the blocks call [`statement`]. Productions: Modelica 3.6, appendix A.2.6; meaning: section 11.2.
 
 use super::{ParseResult, Parser, equation, expr, modification};
 use crate::ast::{BinaryOp, Expr, ExprKind, Statement, StatementKind};
@@ -9,10 +10,12 @@ pub(super) fn statement(p: &mut Parser<'_>) -> ParseResult<Statement> {
     let start = p.span();
     let kind = p.nested(statement_kind)?;
     let span = p.since(start);
+    // Its description and annotation are parsed for their errors; the tree has no place for them.
     modification::comment(p)?;
     Ok(Statement { kind, span })
 }
 
+/// The statement that the current keyword begins, or an assignment or call.
 fn statement_kind(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     Ok(match p.kind() {
         TokenKind::If => {
@@ -45,11 +48,12 @@ fn statement_kind(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     })
 }
 
-/// `(a, , c) := f(x)`.
+/// An assignment of several outputs: `(a, , c) := f(x)`. An empty place drops that output.
 fn assign_tuple(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     let targets = expr::output_list(p)?;
     assignment_sign(p)?;
     let value = expr::expression(p)?;
+    // Only a call has several outputs. The statement is kept, and the error is at the value.
     if !matches!(value.kind, ExprKind::Call { .. }) {
         let help = "a list of variables takes the outputs of a function: `(a, b) := f(x)`";
         p.slip_at(value.span, "expected the call of a function", "not a call", help);
@@ -57,11 +61,12 @@ fn assign_tuple(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     Ok(StatementKind::AssignTuple(targets, value))
 }
 
-/// `a := b` or `f(x)`.
+/// An assignment `a := b`, or a call `f(x)` whose outputs are not used.
 fn assign_or_call(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     let left = expr::simple_expression(p)?;
     match left.kind {
         ExprKind::Call { .. } if !at_assignment_sign(p) => return Ok(StatementKind::Call(left)),
+        // `a == b` has become one expression; if no bracket encloses it, an assignment was meant.
         ExprKind::Binary(BinaryOp::Eq, a, b) if left.span.start == a.span.start => {
             let help = "`==` compares; an assignment has `:=`";
             equation::blame_comparison(p, a.span, b.span, ":=", help);
@@ -74,6 +79,10 @@ fn assign_or_call(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     Ok(StatementKind::Assign(left, expr::expression(p)?))
 }
 
+/// Checks that the left side of an assignment is a component reference.
+///
+/// # Errors
+/// Reports an arrow, an expression as target, or a missing `:=`, whichever the text shows.
 fn check_target(p: &mut Parser<'_>, left: &Expr) -> ParseResult<()> {
     if matches!(left.kind, ExprKind::Reference(_)) {
         return Ok(());
@@ -88,10 +97,12 @@ fn check_target(p: &mut Parser<'_>, left: &Expr) -> ParseResult<()> {
     Err(p.unexpected_in_item("`:=`", None))
 }
 
+/// True at `:=`, or at `=`, which is reported later.
 fn at_assignment_sign(p: &Parser<'_>) -> bool {
     matches!(p.kind(), TokenKind::Assign | TokenKind::Equal)
 }
 
+/// The sign `:=`. `=` is reported and accepted.
 fn assignment_sign(p: &mut Parser<'_>) -> ParseResult<()> {
     if p.eat(TokenKind::Assign) {
         return Ok(());

@@ -1,4 +1,5 @@
-//! Text of files, classes, components and modifications.
+//! The text of files, classes, components and modifications, as methods of [`SyntaxPrinter`].
+//! Prefixes are written in the order that the grammar requires, whatever order the source had.
 
 use super::SyntaxPrinter;
 use crate::ast::{
@@ -8,6 +9,7 @@ use crate::ast::{
 };
 
 impl SyntaxPrinter {
+    /// A file: its `within` clause and its classes, each ended by a semicolon.
     pub(super) fn file(&mut self, file: &StoredDefinition) {
         if let Some(within) = &file.within {
             self.word("within ");
@@ -20,7 +22,7 @@ impl SyntaxPrinter {
         }
     }
 
-    /// A class without its semicolon.
+    /// A class without its semicolon, in the form of its body: long, short, enumeration or derivative.
     pub(super) fn class(&mut self, class: &Class) {
         self.prefixes(&class.prefixes);
         self.prefix(class.prefixes.encapsulated, "encapsulated");
@@ -57,16 +59,19 @@ impl SyntaxPrinter {
         self.constraint(class.constraint.as_ref());
     }
 
+    /// The name and the sign of a short class: `A = `.
     fn short_head(&mut self, class: &Class) {
         self.ident(&class.name);
         self.word(" = ");
     }
 
+    /// The description and annotation after a short class.
     fn comment(&mut self, class: &Class) {
         self.description(class.description.as_deref());
         self.annotation(class.annotation.as_ref());
     }
 
+    /// `enumeration(...)`. `None` stands for the open enumeration `enumeration(:)`.
     fn enumeration(&mut self, literals: Option<&[EnumLiteral]>) {
         self.word("enumeration(");
         match literals {
@@ -79,6 +84,7 @@ impl SyntaxPrinter {
         self.word(")");
     }
 
+    /// The name, description, body and `end` of a long class.
     fn long_class(&mut self, class: &Class, body: &LongBody) {
         if let Some(modification) = &body.class_extends {
             self.word("extends ");
@@ -91,11 +97,13 @@ impl SyntaxPrinter {
         self.word("\n");
         self.elements(&body.elements);
         self.sections(body);
+        // The text of an external declaration is kept as written, its annotation included.
         if let Some(external) = &body.external_text {
             self.depth += 1;
             self.line(&format!("external {external};"));
             self.depth -= 1;
         }
+        // The annotation of a class stands directly before its `end`.
         if let Some(annotation) = &class.annotation {
             self.depth += 1;
             self.begin();
@@ -109,6 +117,7 @@ impl SyntaxPrinter {
         self.ident(&class.name);
     }
 
+    /// The elements in order, with `public` or `protected` wherever the visibility changes.
     fn elements(&mut self, elements: &[Element]) {
         let mut protected = false;
         for element in elements {
@@ -120,6 +129,7 @@ impl SyntaxPrinter {
         }
     }
 
+    /// The equation and algorithm sections. Equations of one kind are one section; algorithms keep their sections.
     fn sections(&mut self, body: &LongBody) {
         for (keyword, equations) in [("initial equation", &body.initial_equations), ("equation", &body.equations)] {
             if !equations.is_empty() {
@@ -135,6 +145,7 @@ impl SyntaxPrinter {
         }
     }
 
+    /// One element, without its semicolon.
     fn element(&mut self, element: &Element) {
         match &element.kind {
             ElementKind::Import(import) => self.import(import),
@@ -144,6 +155,7 @@ impl SyntaxPrinter {
         }
     }
 
+    /// An `import` clause.
     fn import(&mut self, import: &Import) {
         self.word("import ");
         match import {
@@ -167,12 +179,14 @@ impl SyntaxPrinter {
         }
     }
 
+    /// An `extends` clause.
     fn extends(&mut self, extends: &ExtendsClause) {
         self.word("extends ");
         self.path(&extends.base);
         self.optional_modification(extends.modification.as_ref());
     }
 
+    /// The prefixes that classes and components share, each followed by a blank.
     fn prefixes(&mut self, prefixes: &ElementPrefixes) {
         self.prefix(prefixes.redeclare, "redeclare");
         self.prefix(prefixes.final_, "final");
@@ -181,6 +195,7 @@ impl SyntaxPrinter {
         self.prefix(prefixes.replaceable, "replaceable");
     }
 
+    /// `flow`, variability and causality, each followed by a blank.
     fn type_prefix(&mut self, prefix: &TypePrefix) {
         self.prefix(prefix.flow, "flow");
         self.prefix(prefix.stream, "stream");
@@ -197,12 +212,14 @@ impl SyntaxPrinter {
         }
     }
 
-    /// A component clause without its semicolon.
+    /// A component declaration without its semicolon.
+    /// The dimensions stand behind the name, those of the type included.
     pub(super) fn component(&mut self, component: &ComponentDeclaration) {
         self.prefixes(&component.prefixes);
         self.declaration(component);
     }
 
+    /// A component declaration without its element prefixes.
     fn declaration(&mut self, component: &ComponentDeclaration) {
         self.type_prefix(&component.prefix);
         self.path(&component.class);
@@ -219,6 +236,7 @@ impl SyntaxPrinter {
         self.constraint(component.constraint.as_ref());
     }
 
+    /// The `constrainedby` clause, if there is one.
     fn constraint(&mut self, constraint: Option<&ConstrainingClause>) {
         if let Some(constraint) = constraint {
             self.word(" constrainedby ");
@@ -227,7 +245,7 @@ impl SyntaxPrinter {
         }
     }
 
-    /// A blank and the text in quotation marks, if there.
+    /// A blank and the description in quotation marks. Nothing for `None`.
     pub(super) fn description(&mut self, description: Option<&str>) {
         if let Some(text) = description {
             self.word(" ");
@@ -235,6 +253,7 @@ impl SyntaxPrinter {
         }
     }
 
+    /// A blank and the annotation. Nothing for `None`.
     fn annotation(&mut self, annotation: Option<&Modification>) {
         if let Some(annotation) = annotation {
             self.word(" annotation");
@@ -242,15 +261,17 @@ impl SyntaxPrinter {
         }
     }
 
+    /// The modification. Nothing for `None`.
     fn optional_modification(&mut self, modification: Option<&Modification>) {
         if let Some(modification) = modification {
             self.modification(modification);
         }
     }
 
-    /// `(...) = value` with a blank before the sign.
+    /// A modification: arguments in brackets, then ` = value`.
     pub(super) fn modification(&mut self, modification: &Modification) {
         let has_value = modification.value.is_some() || modification.break_value;
+        // Without arguments and value the brackets alone show that there is a modification.
         if !modification.arguments.is_empty() || !has_value {
             self.argument_list(&modification.arguments);
         }
@@ -262,12 +283,14 @@ impl SyntaxPrinter {
         }
     }
 
+    /// The arguments of a modification in brackets.
     fn argument_list(&mut self, arguments: &[ModificationArgument]) {
         self.word("(");
         self.separated(arguments, ", ", Self::argument);
         self.word(")");
     }
 
+    /// One argument of a modification.
     pub(super) fn argument(&mut self, argument: &ModificationArgument) {
         match &argument.kind {
             ModificationArgumentKind::Modify { path, modification, description } => {
@@ -282,6 +305,7 @@ impl SyntaxPrinter {
             }
             ModificationArgumentKind::Class(class) => {
                 self.argument_prefixes(argument, &class.prefixes);
+                // These prefixes are written before `each` and `final` already.
                 let prefixes =
                     ElementPrefixes { redeclare: false, replaceable: false, final_: false, ..class.prefixes };
                 self.class(&Class { prefixes, ..Class::clone(class) });
@@ -300,6 +324,7 @@ impl SyntaxPrinter {
         }
     }
 
+    /// The prefixes of an argument, in the order of the grammar: `redeclare each final replaceable`.
     fn argument_prefixes(&mut self, argument: &ModificationArgument, prefixes: &ElementPrefixes) {
         self.prefix(prefixes.redeclare, "redeclare");
         self.prefix(argument.each, "each");
@@ -308,6 +333,7 @@ impl SyntaxPrinter {
     }
 }
 
+/// The keywords of a kind of class, with the purity of functions.
 fn keywords(kind: ClassKind) -> &'static str {
     match kind {
         ClassKind::Function { operator, purity } => match (purity, operator) {

@@ -1,9 +1,12 @@
-//! Text of equations and statements. A simple one is a line without semicolon; blocks are indented.
+//! The text of equations and statements, as methods of [`SyntaxPrinter`].
+//! The caller has written the indentation and will write the semicolon. Blocks write the lines between, with their
+//! items one level deeper.
 
 use super::SyntaxPrinter;
 use crate::ast::{Equation, EquationKind, Expr, ForIndex, Statement, StatementKind};
 
 impl SyntaxPrinter {
+    /// An equation and its description, without its semicolon.
     pub(super) fn equation(&mut self, equation: &Equation) {
         match &equation.kind {
             EquationKind::Equal(left, right) => {
@@ -32,6 +35,7 @@ impl SyntaxPrinter {
         self.description(equation.description.as_deref());
     }
 
+    /// A statement, without its semicolon.
     pub(super) fn statement(&mut self, statement: &Statement) {
         match &statement.kind {
             StatementKind::Assign(target, value) => {
@@ -66,7 +70,7 @@ impl SyntaxPrinter {
         }
     }
 
-    /// Items one level deeper, each on its line with a semicolon.
+    /// Items one level deeper, each on its own line with a semicolon. `item` writes one without them.
     pub(super) fn lines<T>(&mut self, items: &[T], item: fn(&mut Self, &T)) {
         self.depth += 1;
         for x in items {
@@ -77,8 +81,10 @@ impl SyntaxPrinter {
         self.depth -= 1;
     }
 
+    /// The branches of a block. `keywords` are those of the first and of the further branches.
     fn branches<T>(&mut self, keywords: [&str; 2], branches: &[(Expr, Vec<T>)], item: fn(&mut Self, &T)) {
         for (i, (condition, body)) in branches.iter().enumerate() {
+            // The caller has indented the first line.
             if i > 0 {
                 self.begin();
             }
@@ -89,6 +95,7 @@ impl SyntaxPrinter {
         }
     }
 
+    /// The `else` branch, unless it is empty, and `end if`.
     fn otherwise<T>(&mut self, body: &[T], item: fn(&mut Self, &T)) {
         if !body.is_empty() {
             self.line("else");
@@ -97,6 +104,7 @@ impl SyntaxPrinter {
         self.close("end if");
     }
 
+    /// A for-loop with its items.
     fn for_block<T>(&mut self, iterators: &[ForIndex], body: &[T], item: fn(&mut Self, &T)) {
         self.word("for ");
         self.iterators(iterators);
@@ -105,6 +113,7 @@ impl SyntaxPrinter {
         self.close("end for");
     }
 
+    /// The last line of a block, which the caller ends with a semicolon.
     fn close(&mut self, text: &str) {
         self.begin();
         self.word(text);

@@ -18,7 +18,9 @@ const PRODUCT: u8 = 7;
 const POWER: u8 = 8;
 const OPERAND: u8 = 9;
 
+/// The text of names and expressions.
 impl SyntaxPrinter {
+    /// A dotted name.
     pub(super) fn path(&mut self, path: &Path) {
         if path.global {
             self.word(".");
@@ -26,10 +28,12 @@ impl SyntaxPrinter {
         self.separated(&path.parts, ".", |p, part| p.ident(part));
     }
 
+    /// An identifier, with its single quotes if it has them.
     pub(super) fn ident(&mut self, ident: &Ident) {
         self.word(ident.name.as_str());
     }
 
+    /// A component reference.
     pub(super) fn reference(&mut self, reference: &ComponentReference) {
         if reference.global {
             self.word(".");
@@ -37,6 +41,7 @@ impl SyntaxPrinter {
         self.separated(&reference.parts, ".", Self::reference_part);
     }
 
+    /// A name with its subscripts.
     fn reference_part(&mut self, part: &ReferencePart) {
         self.ident(&part.name);
         self.subscripts(&part.subscripts);
@@ -55,16 +60,17 @@ impl SyntaxPrinter {
         self.word("]");
     }
 
+    /// An expression of any kind, without brackets around it.
     pub(super) fn expression(&mut self, expr: &Expr) {
         self.operand(expr, ANY);
     }
 
-    /// An expression where `if` cannot begin, as on the left of an equation.
+    /// An expression that may not begin with `if`, as on the left of an equation; such a one is put in brackets.
     pub(super) fn simple_expression(&mut self, expr: &Expr) {
         self.operand(expr, RANGE);
     }
 
-    /// An expression in brackets if it binds more weakly than `least`.
+    /// An operand, in brackets if it binds more weakly than `least` requires at this place.
     fn operand(&mut self, expr: &Expr, least: u8) {
         if strength(&expr.kind) < least {
             self.word("(");
@@ -75,6 +81,7 @@ impl SyntaxPrinter {
         }
     }
 
+    /// The text of an expression, without brackets around it.
     fn bare(&mut self, kind: &ExprKind) {
         match kind {
             ExprKind::Integer(value) => self.number(value),
@@ -106,15 +113,18 @@ impl SyntaxPrinter {
                 self.subscripts(indices);
             }
             ExprKind::End => self.word("end"),
+            // A quoted identifier: the text reads back, though not as the same tree.
             ExprKind::Error => self.word("'?'"),
         }
     }
 
-    /// Rust's shortest digits that read back the same are valid Modelica.
+    /// A number in the shortest digits that read back as the same value, as `Debug` of Rust gives them.
+    /// They are valid Modelica, except for infinity and NaN.
     fn number(&mut self, value: &impl std::fmt::Debug) {
         write!(self.out, "{value:?}").expect("writing to a string succeeds");
     }
 
+    /// A string in quotation marks, with the escapes of Modelica 3.6, section 2.4.4.
     pub(super) fn string(&mut self, value: &str) {
         self.word("\"");
         for c in value.chars() {
@@ -127,12 +137,14 @@ impl SyntaxPrinter {
                 '\u{b}' => self.word("\\v"),
                 '\r' => self.word("\\r"),
                 '\t' => self.word("\\t"),
+                // Line breaks may stand in a string as they are.
                 _ => self.out.push(c),
             }
         }
         self.word("\"");
     }
 
+    /// A prefix operator with its operand.
     fn unary(&mut self, op: UnaryOp, operand: &Expr) {
         match op {
             UnaryOp::Plus => self.word("+"),
@@ -144,11 +156,14 @@ impl SyntaxPrinter {
                 return self.operand(operand, RELATION);
             }
         }
+        // A sign takes a product as operand: `-a * b` is `-(a * b)`.
         self.operand(operand, PRODUCT);
     }
 
+    /// Two operands with their operator.
     fn binary(&mut self, op: BinaryOp, left: &Expr, right: &Expr) {
         let (sign, strength) = sign_and_strength(op);
+        // Left-associative operators need no brackets on the left; relations and powers do not associate at all.
         let chains = !matches!(strength, RELATION | POWER);
         self.operand(left, if chains { strength } else { strength + 1 });
         if strength == POWER {
@@ -163,6 +178,7 @@ impl SyntaxPrinter {
         self.operand(right, strength + 1);
     }
 
+    /// `if c then a elseif d then b else e`.
     fn if_expression(&mut self, branches: &[(Expr, Expr)], otherwise: &Expr) {
         let mut keyword = "if ";
         for (condition, value) in branches {
@@ -176,6 +192,7 @@ impl SyntaxPrinter {
         self.expression(otherwise);
     }
 
+    /// `from:to` or `from:step:to`.
     fn range(&mut self, from: &Expr, step: Option<&Expr>, to: &Expr) {
         self.operand(from, OR);
         for next in step.into_iter().chain([to]) {
@@ -184,21 +201,24 @@ impl SyntaxPrinter {
         }
     }
 
+    /// What `inner` writes, between two signs.
     fn between(&mut self, open: &str, close: &str, inner: impl FnOnce(&mut Self)) {
         self.word(open);
         inner(self);
         self.word(close);
     }
 
+    /// The elements of a row of a matrix, separated by commas.
     fn row(&mut self, row: &[Expr]) {
         self.separated(row, ", ", Self::expression);
     }
 
-    /// `(a, , c)`.
+    /// A list of outputs, of which each may be missing: `(a, , c)`.
     pub(super) fn tuple(&mut self, items: &[Option<Expr>]) {
         self.between("(", ")", |p| p.separated(items, ", ", |p, item| item.iter().for_each(|x| p.expression(x))));
     }
 
+    /// The arguments of a call in brackets, positional ones first.
     fn arguments(&mut self, args: &[Expr], named: &[(Ident, Expr)]) {
         self.word("(");
         self.separated(args, ", ", Self::expression);
@@ -213,6 +233,7 @@ impl SyntaxPrinter {
         self.word(")");
     }
 
+    /// A reduction, `f(body for i in r)`, or an array comprehension, `{body for i in r}`.
     fn comprehension(&mut self, function: Option<&ComponentReference>, body: &Expr, iterators: &[ForIndex]) {
         if let Some(function) = function {
             self.reference(function);
@@ -225,6 +246,7 @@ impl SyntaxPrinter {
         });
     }
 
+    /// Iterators separated by commas, outermost first.
     pub(super) fn iterators(&mut self, iterators: &[ForIndex]) {
         self.separated(iterators, ", ", |p, iterator| {
             p.ident(&iterator.name);
@@ -236,12 +258,14 @@ impl SyntaxPrinter {
     }
 }
 
+/// The precedence of an expression. Expressions that need no brackets anywhere have [`OPERAND`].
 fn strength(kind: &ExprKind) -> u8 {
     match kind {
         ExprKind::If { .. } => ANY,
         ExprKind::Range { .. } => RANGE,
         ExprKind::Unary(UnaryOp::Not, _) => NOT,
         ExprKind::Unary(..) => SUM,
+        // A negative literal is written with a sign, and binds like one.
         ExprKind::Integer(value) if *value < 0 => SUM,
         ExprKind::Real(value) if value.is_sign_negative() => SUM,
         ExprKind::Binary(op, ..) => sign_and_strength(*op).1,
@@ -249,6 +273,7 @@ fn strength(kind: &ExprKind) -> u8 {
     }
 }
 
+/// The sign of an operator, and its precedence.
 fn sign_and_strength(op: BinaryOp) -> (&'static str, u8) {
     match op {
         BinaryOp::Or => ("or", OR),

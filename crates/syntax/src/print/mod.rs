@@ -1,4 +1,5 @@
-//! Syntax tree back to Modelica text, which reads back as the same tree.
+//! The printer: a syntax tree in, Modelica text out, which reads back as the same tree.
+//! Nodes have it as their `Display`. `format`, in contrast, lays out a text without changing its tokens.
 //!
 //! Comments, annotations other than those of classes and components, and the order of the sections of a class are not
 //! in the tree and so not in the text. Numbers that are not finite have no Modelica text.
@@ -13,20 +14,22 @@ use super::ast::{
 };
 use std::fmt;
 
-/// A text under construction.
+/// The text written so far, and the indentation of the next line.
 #[derive(Default)]
 struct SyntaxPrinter {
+    /// The text.
     out: String,
     /// Depth of indentation, two blanks each.
     depth: usize,
 }
 
 impl SyntaxPrinter {
+    /// Appends a text as it is.
     fn word(&mut self, text: &str) {
         self.out.push_str(text);
     }
 
-    /// A word and a blank, if asked for.
+    /// A word and a blank, if `is_there`.
     fn prefix(&mut self, is_there: bool, text: &str) {
         if is_there {
             self.word(text);
@@ -34,24 +37,26 @@ impl SyntaxPrinter {
         }
     }
 
-    /// Begins a line at the present depth.
+    /// Begins a line: writes its indentation.
     fn begin(&mut self) {
         for _ in 0..self.depth {
             self.out.push_str("  ");
         }
     }
 
+    /// Appends a text and ends the line.
     fn end(&mut self, text: &str) {
         self.word(text);
         self.word("\n");
     }
 
+    /// A line of its own at the present depth.
     fn line(&mut self, text: &str) {
         self.begin();
         self.end(text);
     }
 
-    /// Items with a separator between them.
+    /// Writes items by `item`, with a separator between them.
     fn separated<T>(&mut self, items: &[T], separator: &str, mut item: impl FnMut(&mut Self, &T)) {
         for (i, x) in items.iter().enumerate() {
             if i > 0 {

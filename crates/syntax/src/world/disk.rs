@@ -1,4 +1,4 @@
-//! The disk as a [`World`]: the one place below the command that reads files.
+//! The disk as a [`World`]. Below the command this module is the only one that reads files.
 
 #![allow(clippy::disallowed_methods, reason = "what a World is for")]
 
@@ -7,13 +7,14 @@ use std::path::Path;
 
 use super::World;
 
-/// Reads files and folders of this machine.
+/// The files and folders of this machine.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DiskWorld;
 
 impl World for DiskWorld {
     fn read(&self, path: &Path) -> Result<String, String> {
         let bytes = std::fs::read(path).map_err(|e| reason(&e))?;
+        // The message names the line of the first invalid byte, which is usually a letter in Latin-1.
         String::from_utf8(bytes).map_err(|e| {
             let valid = e.utf8_error().valid_up_to();
             let line = 1 + e.as_bytes()[..valid].iter().filter(|b| **b == b'\n').count();
@@ -31,6 +32,7 @@ impl World for DiskWorld {
             .filter_map(Result::ok)
             .map(|e| (e.file_name().to_string_lossy().into_owned(), e.path().is_dir()))
             .collect();
+        // The order of a folder's entries depends on the file system; results must not.
         entries.sort();
         Some(entries)
     }
@@ -46,7 +48,7 @@ impl World for DiskWorld {
     }
 }
 
-/// Why a file operation failed, as people say it.
+/// The cause of a failed file operation in plain words, for the user.
 pub fn reason(error: &io::Error) -> String {
     match error.kind() {
         io::ErrorKind::NotFound => "there is no such file".to_owned(),

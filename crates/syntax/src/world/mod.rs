@@ -1,4 +1,5 @@
-//! The only door to files: stages below `cli` see the outside through a [`World`].
+//! The only access to files: all stages below the command read files through a [`World`].
+//! Tests and the browser hold their texts in memory, and an editor lays unsaved texts over the disk.
 
 #[cfg(feature = "fmi")]
 mod compiler;
@@ -15,40 +16,41 @@ pub use folder::TemporaryFolder;
 
 use std::path::{Path, PathBuf};
 
-/// Where texts come from: [`DiskWorld`] reads the disk, [`MemoryWorld`] holds texts. Classes that ship with bramah are
-/// packed into the binary and need no world.
+/// A source of texts: [`DiskWorld`] reads the disk, [`MemoryWorld`] holds texts, [`Overlay`] combines them.
+/// Classes that ship with bramah are packed into the binary and need no world.
 pub trait World: Sync {
-    /// The text of a file.
+    /// The text of a file, which must be UTF-8.
     ///
     /// # Errors
-    /// A sentence saying why it cannot be read (missing, not UTF-8, no permission).
+    /// A sentence with the cause (missing, not UTF-8, no permission).
     fn read(&self, path: &Path) -> Result<String, String>;
 
-    /// The bytes of a file that is no text.
+    /// The bytes of a file, which need not be text. By default those of its text.
     ///
     /// # Errors
-    /// A sentence saying why they cannot be read.
+    /// A sentence with the cause.
     fn bytes(&self, path: &Path) -> Result<Vec<u8>, String> {
         self.read(path).map(String::into_bytes)
     }
 
-    /// The shared library that the C compiler makes of a text, the file named `ModelicaUtilities.h` and further arguments:
-    /// C sources, libraries, flags.
+    /// Compiles a C text to a shared library. `utilities` is the content of the file `ModelicaUtilities.h`.
+    /// The arguments are further C sources, libraries and flags.
     ///
     /// # Errors
-    /// What the compiler says, or that nothing is compiled here.
+    /// The messages of the compiler. By default that nothing is compiled here.
     #[cfg(feature = "fmi")]
     fn compile_c(&self, _text: &str, _utilities: &str, _arguments: &[std::ffi::OsString]) -> Result<CompiledC, String> {
         Err("nothing is compiled here".to_owned())
     }
 
-    /// Names of the entries of a folder with whether each is a folder, sorted; `None` if it is no folder.
+    /// The entries of a folder, sorted by name, each with whether it is a folder itself. `None` if it is no folder.
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>>;
 }
 
-/// Files held in memory.
+/// A world of texts in memory. Folders exist as far as paths of files pass through them.
 #[derive(Clone, Debug, Default)]
 pub struct MemoryWorld {
+    /// The text of each path.
     files: std::collections::BTreeMap<PathBuf, String>,
 }
 
@@ -60,7 +62,7 @@ impl MemoryWorld {
         world
     }
 
-    /// Adds a file.
+    /// Adds a file, or replaces its text.
     pub fn add(&mut self, path: impl Into<PathBuf>, text: impl Into<String>) {
         self.files.insert(path.into(), text.into());
     }
@@ -76,7 +78,9 @@ impl World for MemoryWorld {
         for file in self.files.keys() {
             let Ok(rest) = file.strip_prefix(path) else { continue };
             let mut parts = rest.components();
+            // The path is a file itself, and no folder.
             let Some(first) = parts.next() else { continue };
+            // What follows the first part makes that part a folder.
             let folder = parts.next().is_some();
             entries.insert(first.as_os_str().to_string_lossy().into_owned(), folder);
         }
@@ -84,11 +88,11 @@ impl World for MemoryWorld {
     }
 }
 
-/// A world with some files laid over it.
+/// A world with some files laid over another one: an editor's unsaved texts over the disk.
 pub struct Overlay<'a> {
-    /// What lies below.
+    /// The world that is asked for files not in `files`.
     pub base: &'a dyn World,
-    /// Files that are seen first.
+    /// The files that hide those of `base`.
     pub files: MemoryWorld,
 }
 
@@ -109,6 +113,7 @@ impl World for Overlay<'_> {
     fn list(&self, path: &Path) -> Option<Vec<(String, bool)>> {
         match (self.files.list(path), self.base.list(path)) {
             (Some(above), Some(below)) => {
+                // An entry in both is taken from above.
                 let all: std::collections::BTreeMap<_, _> = below.into_iter().chain(above).collect();
                 Some(all.into_iter().collect())
             }
