@@ -7,6 +7,7 @@
 
 use crate::rig;
 
+use bramah::Budget;
 use bramah::Sources;
 use bramah::internals::gap::fixed::corrected;
 use bramah::internals::gap::report::report;
@@ -24,6 +25,7 @@ use std::fmt::Write as _;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::LazyLock;
+use std::time::{Duration, Instant};
 
 /// Circuits with inputs: a volume between two orifices, a shaft with friction.
 const CIRCUITS: &str = "
@@ -233,7 +235,11 @@ fn diagnosed(case: &Case) -> bool {
     let Some(study) = Study::read(&world, Path::new("study.toml"), &mut sources).value else { return false };
     let Ok(question) = question(&world, &study, None, &mut sources) else { return false };
     let Ok(held) = question.held(None, &mut sources) else { return false };
-    let Ok(found) = search(&question.problem, &held.recordings, None, &mut |_| ControlFlow::Continue(())) else {
+    // as the command does; without a budget one case in a hundred takes minutes
+    let start = Instant::now();
+    let gone = || start.elapsed();
+    let budget = Some(Budget { time: Some(Duration::from_secs(10)), gone: &gone });
+    let Ok(found) = search(&question.problem, &held.recordings, budget, &mut |_| ControlFlow::Continue(())) else {
         return false;
     };
     let verdict = conclude(&question.problem, &found, &held.recordings, 0.0);

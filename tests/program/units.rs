@@ -445,8 +445,15 @@ fn an_effect_is_found_around_a_unit() {
     std::fs::write(bench.path().join("Slide.mo"), text).unwrap();
     recorded(&bench, "Slide.Rig", &[], 3, "a.csv");
     recorded(&bench, "Slide.Rig", &[], 4, "b.csv");
-    let diagnosis =
-        bramah::diagnose(&DiskWorld, &bench.path().join("study.toml")).unwrap_or_else(|e| panic!("{}", e.full()));
+    // without a budget every hypothesis is fitted through the unit: minutes
+    let start = std::time::Instant::now();
+    let gone = || start.elapsed();
+    let budget = Some(bramah::Budget { time: Some(std::time::Duration::from_secs(40)), gone: &gone });
+    let options = bramah::DiagnoseOptions { budget, ..Default::default() };
+    let study = bench.path().join("study.toml");
+    let mut go_on = |_| std::ops::ControlFlow::Continue(());
+    let (diagnosis, _) =
+        bramah::diagnose_as(&DiskWorld, &study, options, &mut go_on).unwrap_or_else(|e| panic!("{}", e.full()));
     let effects: Vec<&str> = diagnosis.verdict().effects.iter().map(|e| e.effect.as_str()).collect();
     assert_eq!(effects, ["Effects.TranslationalDryFriction"], "{}", diagnosis.words());
     let corrected = diagnosis.corrected().value.expect("it can be written");

@@ -1,25 +1,26 @@
-//! Affine expressions: `e = coefficient*leaf + rest` with both free of the leaf, and equations solved for a leaf.
+//! Affine expressions, `e = coefficient*leaf + rest` with both parts free of the leaf, and equations solved for a leaf.
+//! `structure` solves linear equations by them, where the structure of an expression shows that it is affine.
 
 use super::{BinaryFunction, ExprId, ExprNode, Exprs, UnaryFunction};
 use rustc_hash::FxHashMap;
 
-/// `coefficient*leaf + rest`
+/// The parts of an affine expression `coefficient*leaf + rest`. Both are free of the leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AffineForm {
-    /// The factor of the leaf.
+    /// The factor of the leaf. It may be an expression.
     pub coefficient: ExprId,
-    /// What is added.
+    /// The part without the leaf.
     pub rest: ExprId,
 }
 
 impl Exprs {
-    /// `e` as an affine expression of `leaf`, if its structure shows that it is one. The coefficient is 0 when `e` does
-    /// not depend on the leaf.
+    /// `e` as an affine expression of `leaf`. `None` if its structure does not show that it is one.
+    /// The coefficient is 0 if `e` does not depend on the leaf.
     pub fn linear_in(&mut self, e: ExprId, leaf: ExprId) -> Option<AffineForm> {
-        // A part that is not in the map is free of the leaf.
+        // A node that is not in the map is free of the leaf.
         let mut parts: FxHashMap<ExprId, AffineForm> = FxHashMap::default();
         parts.insert(leaf, AffineForm { coefficient: Self::ONE, rest: Self::ZERO });
-        // No node below the leaf's id can hold it.
+        // Operands have smaller ids, so no node with a smaller id than the leaf can contain it.
         for node in self.reachable(&[e], |node| node > leaf) {
             let operands = self.operands(node);
             if operands.as_slice().iter().any(|operand| parts.contains_key(operand)) {
@@ -30,8 +31,9 @@ impl Exprs {
         Some(parts.get(&e).copied().unwrap_or(AffineForm { coefficient: Self::ZERO, rest: e }))
     }
 
-    /// The value of `leaf` that fulfils `lhs = rhs`, and the coefficient that was divided by, when the equation is affine
-    /// in the leaf and the coefficient is not the number 0. The value is meaningless where the coefficient vanishes.
+    /// Solves `lhs = rhs` for `leaf`: its value, and the coefficient that it was divided by.
+    /// `None` if the equation is not affine in the leaf, or the coefficient is the number 0.
+    /// The value has no meaning where the coefficient vanishes during the run.
     pub fn solve_for(&mut self, lhs: ExprId, rhs: ExprId, leaf: ExprId) -> Option<(ExprId, ExprId)> {
         let left = self.linear_in(lhs, leaf)?;
         let right = self.linear_in(rhs, leaf)?;
@@ -43,6 +45,8 @@ impl Exprs {
         Some((self.div(rest, coefficient), coefficient))
     }
 
+    /// A node as affine expression, from those of its operands. At least one operand contains the leaf.
+    /// `None` if the node is not affine in it.
     fn affine_node(&mut self, node: ExprId, parts: &FxHashMap<ExprId, AffineForm>) -> Option<AffineForm> {
         let of = |e: ExprId| parts.get(&e).copied().unwrap_or(AffineForm { coefficient: Self::ZERO, rest: e });
         let free = |e: ExprId| !parts.contains_key(&e);
@@ -60,12 +64,14 @@ impl Exprs {
             ExprNode::Binary(BinaryFunction::Div, a, b) if free(b) => {
                 Some(self.each_part(of(a), of(a), |pool, x, _| pool.div(x, b)))
             }
+            // With a condition that contains the leaf there is a kink or jump.
             ExprNode::If(c, a, b) if free(c) => Some(self.each_part(of(a), of(b), |pool, x, y| pool.if_(c, x, y))),
             ExprNode::Homotopy(a, b) => Some(self.each_part(of(a), of(b), Exprs::homotopy)),
             _ => None,
         }
     }
 
+    /// Applies an operation to the coefficients and to the rests of two affine expressions.
     fn each_part(
         &mut self,
         a: AffineForm,

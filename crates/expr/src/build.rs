@@ -1,21 +1,23 @@
-//! Constructors that simplify.
+//! The constructors of expressions, which simplify.
 //!
-//! What they may do, and nothing else: fold numbers when the result is finite (`1/0` stays as written, so that the run
-//! can name it), drop neutral elements, cancel `x - x` and double negations, move signs outwards, choose the branch of
-//! an `if` with a known condition. A product with the number 0 and a quotient of the number 0 are 0 whatever the other
-//! side is at run time: a structural zero. The sign of a zero is not kept. Nothing is reassociated, so rounding is as written; of two commutative
-//! spellings the one that came first into the pool is shared.
+//! They do these things and nothing else: fold numbers if the result is finite (`1/0` stays as written, so that the run
+//! can name it), drop neutral elements, cancel `x - x` and double negations, move signs outwards, and choose the branch
+//! of an `if` with a known condition.
+//! A product with the number 0, and a quotient of the number 0, are 0 whatever the other operand will be: a structural
+//! zero. The sign of a zero is not kept.
+//! Nothing is reassociated, so that results round as written. Of two commutative spellings the first one is shared.
 
 use super::math;
 use super::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction};
 
 impl Exprs {
-    /// The negative.
+    /// `-a`. The sign of a difference, or of a product with a number, is absorbed.
     pub fn neg(&mut self, a: ExprId) -> ExprId {
         match self.node(a) {
             ExprNode::Num(bits) => self.num(-f64::from_bits(bits)),
             ExprNode::Unary(UnaryFunction::Neg, inner) => inner,
             ExprNode::Binary(BinaryFunction::Sub, x, y) => self.sub(y, x),
+            // The number in front takes the sign, which saves an operation.
             ExprNode::Binary(op @ (BinaryFunction::Mul | BinaryFunction::Div), x, y) => match self.as_num(x) {
                 Some(c) => {
                     let minus = self.num(-c);
@@ -27,7 +29,7 @@ impl Exprs {
         }
     }
 
-    /// Logical negation.
+    /// `not a`.
     pub fn not(&mut self, a: ExprId) -> ExprId {
         match self.node(a) {
             ExprNode::Num(bits) => self.boolean(f64::from_bits(bits) == 0.0),
@@ -36,7 +38,7 @@ impl Exprs {
         }
     }
 
-    /// True when the value can only be 0 or 1. Variables are not known to be.
+    /// True if the value can only be 0 or 1, so that a double `not` changes nothing.
     fn is_truth(&self, e: ExprId) -> bool {
         match self.node(e) {
             ExprNode::Rel(..)
@@ -46,13 +48,13 @@ impl Exprs {
             | ExprNode::Terminal => true,
             ExprNode::Unary(op, _) => op == UnaryFunction::Not,
             ExprNode::Binary(op, ..) => matches!(op, BinaryFunction::And | BinaryFunction::Or),
-            // A variable under `not` is Boolean: the type check has seen to it.
+            // A variable under `not` is Boolean: the type check of the model has made sure of that.
             ExprNode::Var(_) | ExprNode::Pre(_) => true,
             _ => e == Self::ZERO || e == Self::ONE,
         }
     }
 
-    /// The sum.
+    /// `a + b`. Adding a negative becomes a subtraction.
     pub fn add(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == Self::ZERO {
             return b;
@@ -72,11 +74,12 @@ impl Exprs {
         }
     }
 
-    /// The difference.
+    /// `a - b`. Subtracting a negative becomes an addition.
     pub fn sub(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if b == Self::ZERO {
             return a;
         }
+        // Also where `a` will be infinite or NaN: a structural zero.
         if a == b {
             return Self::ZERO;
         }
@@ -92,7 +95,7 @@ impl Exprs {
         self.intern(ExprNode::Binary(BinaryFunction::Sub, a, b))
     }
 
-    /// The product.
+    /// `a*b`. Signs of the factors move to the front.
     pub fn mul(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == Self::ZERO || b == Self::ZERO {
             return Self::ZERO;
@@ -120,8 +123,9 @@ impl Exprs {
         }
     }
 
-    /// The quotient.
+    /// `a/b`. Signs of both operands move to the front.
     pub fn div(&mut self, a: ExprId, b: ExprId) -> ExprId {
+        // `0/0` is not simplified, so that the run reports it.
         if b == Self::ONE || (a == Self::ZERO && b != Self::ZERO) {
             return a;
         }
@@ -139,7 +143,7 @@ impl Exprs {
         }
     }
 
-    /// `a^b`
+    /// `a^b`. The exponents 0 and 1, and the base 1, are simplified.
     pub fn pow(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if b == Self::ZERO || a == Self::ONE {
             return Self::ONE;
@@ -150,25 +154,26 @@ impl Exprs {
         self.folded(BinaryFunction::Pow, a, b)
     }
 
-    /// The smaller one.
+    /// The smaller of two values.
     pub fn min(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == b { a } else { self.folded(BinaryFunction::Min, a, b) }
     }
 
-    /// The larger one.
+    /// The larger of two values.
     pub fn max(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == b { a } else { self.folded(BinaryFunction::Max, a, b) }
     }
 
-    /// The angle of the point `(x, y)`.
+    /// The angle of the point `(x, y)`, in rad, as in `math::atan2`.
     pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
         self.folded(BinaryFunction::Atan2, y, x)
     }
 
-    /// Both.
+    /// `a and b`.
     pub fn and(&mut self, a: ExprId, b: ExprId) -> ExprId {
         match (self.as_num(a), self.as_num(b)) {
             (Some(0.0), _) | (_, Some(0.0)) => Self::ZERO,
+            // Any number but 0 is true.
             (Some(_), _) => b,
             (_, Some(_)) => a,
             _ if a == b => a,
@@ -176,7 +181,7 @@ impl Exprs {
         }
     }
 
-    /// At least one.
+    /// `a or b`.
     pub fn or(&mut self, a: ExprId, b: ExprId) -> ExprId {
         match (self.as_num(a), self.as_num(b)) {
             (Some(0.0), _) => b,
@@ -187,13 +192,13 @@ impl Exprs {
         }
     }
 
-    /// The second wherever the first holds.
+    /// The implication: `b` wherever `a` holds, that is `not a or b`.
     pub fn implies(&mut self, a: ExprId, b: ExprId) -> ExprId {
         let not = self.not(a);
         self.or(not, b)
     }
 
-    /// Any function of two arguments, simplified.
+    /// A function of two arguments by its name, simplified.
     pub fn binary(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         match op {
             BinaryFunction::Add => self.add(a, b),
@@ -209,7 +214,7 @@ impl Exprs {
         }
     }
 
-    /// Any function of one argument, simplified.
+    /// A function of one argument by its name, simplified.
     pub fn unary(&mut self, op: UnaryFunction, a: ExprId) -> ExprId {
         match op {
             UnaryFunction::Neg => return self.neg(a),
@@ -218,10 +223,12 @@ impl Exprs {
         }
         if let Some(x) = self.as_num(a) {
             let value = math::unary(op, x);
+            // `sqrt(-1)` and the like stay as written, so that the run can name them.
             if value.is_finite() {
                 return self.num(value);
             }
         }
+        // The absolute value of what has no sign.
         match (op, self.node(a)) {
             (UnaryFunction::Abs, ExprNode::Unary(UnaryFunction::Neg, x)) => self.unary(UnaryFunction::Abs, x),
             (UnaryFunction::Abs, ExprNode::Unary(UnaryFunction::Abs | UnaryFunction::Sqrt | UnaryFunction::Exp, _)) => {
@@ -231,22 +238,22 @@ impl Exprs {
         }
     }
 
-    /// Absolute value.
+    /// The absolute value of `a`.
     pub fn abs(&mut self, a: ExprId) -> ExprId {
         self.unary(UnaryFunction::Abs, a)
     }
 
-    /// Square root.
+    /// The square root of `a`.
     pub fn sqrt(&mut self, a: ExprId) -> ExprId {
         self.unary(UnaryFunction::Sqrt, a)
     }
 
-    /// Largest whole number not above the argument; makes no event.
+    /// The largest whole number not above `a`. It makes no event.
     pub fn floor(&mut self, a: ExprId) -> ExprId {
         self.unary(UnaryFunction::Floor, a)
     }
 
-    /// Largest whole number not above the argument; a change is an event.
+    /// The largest whole number not above `a`. A change of it is an event.
     pub fn event_floor(&mut self, a: ExprId) -> ExprId {
         if self.as_num(a).is_some() { self.floor(a) } else { self.intern(ExprNode::EventFloor(a)) }
     }
@@ -261,7 +268,9 @@ impl Exprs {
         self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(ExprNode::EventRel(rel, a, b)))
     }
 
+    /// The value of a relation between equal operands or numbers. `None` if it is not known.
     fn known_rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> Option<ExprId> {
+        // An operand that becomes NaN would make the relation false; this is ignored.
         if a == b {
             return Some(self.boolean(matches!(rel, RelationalOp::Le | RelationalOp::Ge | RelationalOp::Eq)));
         }
@@ -269,7 +278,7 @@ impl Exprs {
         Some(self.boolean(math::holds(rel, x, y)))
     }
 
-    /// `if c then a else b`
+    /// `if c then a else b`. A negated condition exchanges the branches.
     pub fn if_(&mut self, c: ExprId, a: ExprId, b: ExprId) -> ExprId {
         if let Some(known) = self.as_num(c) {
             return if known == 0.0 { b } else { a };
@@ -283,17 +292,17 @@ impl Exprs {
         }
     }
 
-    /// `homotopy(actual, simplified)`
+    /// `homotopy(actual, simplified)`.
     pub fn homotopy(&mut self, actual: ExprId, simplified: ExprId) -> ExprId {
         if actual == simplified { actual } else { self.intern(ExprNode::Homotopy(actual, simplified)) }
     }
 
-    /// `sample(start, interval)`
+    /// `sample(start, interval)`: true at `start + k*interval`, in s.
     pub fn sample(&mut self, start: ExprId, interval: ExprId) -> ExprId {
         self.intern(ExprNode::Sample(start, interval))
     }
 
-    /// `delay(a, time)`
+    /// `delay(a, time)`. A number is its own delayed value.
     pub fn delay(&mut self, a: ExprId, time: ExprId) -> ExprId {
         match self.node(a) {
             ExprNode::Num(_) => a,
@@ -301,18 +310,18 @@ impl Exprs {
         }
     }
 
-    /// `a*a`, written as a power.
+    /// The square of `a`, as a power.
     pub fn square(&mut self, a: ExprId) -> ExprId {
         let two = self.num(2.0);
         self.pow(a, two)
     }
 
-    /// The sum of all, from left to right; 0 when there are none.
+    /// The sum of all terms from left to right. 0 if there are none.
     pub fn sum(&mut self, terms: &[ExprId]) -> ExprId {
         terms.iter().fold(Self::ZERO, |sum, &term| self.add(sum, term))
     }
 
-    /// `x` when the expression is `-x` or a negative number.
+    /// The expression `x` if `e` is `-x`, or the positive number if `e` is a negative one. `None` for anything else.
     fn negative_of(&mut self, e: ExprId) -> Option<ExprId> {
         match self.node(e) {
             ExprNode::Unary(UnaryFunction::Neg, x) => Some(x),
@@ -321,22 +330,24 @@ impl Exprs {
         }
     }
 
+    /// The negative of `op(a, b)`.
     fn negated(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         let positive = self.binary(op, a, b);
         self.neg(positive)
     }
 
-    /// The number, when both are numbers and the result is finite.
+    /// The value of `op(a, b)`. `None` unless both are numbers and the result is finite.
     fn fold(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> Option<ExprId> {
         let value = math::binary(op, self.as_num(a)?, self.as_num(b)?);
         value.is_finite().then(|| self.num(value))
     }
 
+    /// `op(a, b)`, as a number if possible.
     fn folded(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         self.fold(op, a, b).unwrap_or_else(|| self.intern(ExprNode::Binary(op, a, b)))
     }
 
-    /// Shares `b op a` if that spelling is in the pool.
+    /// `a op b`, or the node of `b op a` if that is in the pool already.
     fn commutative(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         self.find(&ExprNode::Binary(op, b, a)).unwrap_or_else(|| self.intern(ExprNode::Binary(op, a, b)))
     }

@@ -1,17 +1,20 @@
-//! A pool without the nodes that nothing refers to any more.
+//! Removes nodes that nothing refers to any more. The crate `model` calls this when its stages have left many behind.
 
 use super::{ExprId, ExprNode, Exprs};
 
 impl Exprs {
-    /// Keeps only what the roots reach, and rewrites them.
+    /// Keeps only the nodes that the roots reach, and changes the roots to the new ids. All other ids become invalid.
+    /// Functions are kept.
     pub fn compact(&mut self, roots: &mut [&mut ExprId]) {
         let wanted: Vec<ExprId> = roots.iter().map(|r| **r).collect();
         let mut fresh = Exprs {
+            // Functions refer to no nodes, so they move unchanged.
             functions: std::mem::take(&mut self.functions),
             tangents: std::mem::take(&mut self.tangents),
             partials: std::mem::take(&mut self.partials),
             ..Exprs::default()
         };
+        // The new id of each old node. Operands have smaller ids, so theirs are known in time.
         let mut place = vec![Exprs::ZERO; self.len()];
         for e in self.reachable(&wanted, |_| true) {
             place[e.index()] = fresh.copied(self, e, &place);
@@ -22,6 +25,7 @@ impl Exprs {
         *self = fresh;
     }
 
+    /// Adds a node of the old pool to this one. `place` has the new ids of its operands.
     fn copied(&mut self, from: &Exprs, e: ExprId, place: &[ExprId]) -> ExprId {
         let to = |e: ExprId| place[e.index()];
         let node = match from.node(e) {
@@ -40,6 +44,7 @@ impl Exprs {
             }
             leaf => leaf,
         };
+        // Without simplification: the node was simplified when it was built.
         self.intern(node)
     }
 }

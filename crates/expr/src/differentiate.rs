@@ -1,10 +1,12 @@
-//! Exact derivatives: partial ones by a leaf, and the total one by time.
+//! Exact symbolic derivatives: partial ones by a leaf or along a direction, and total ones by time.
+//! `structure` reduces the index by time derivatives; `solve` makes Jacobians of partial ones.
+//! The rules for each function are in `rules`; calls use the derivative functions of `tangent`.
 
 use super::rules::{self, ExprAlgebra};
 use super::{ArgumentRange, BinaryFunction, ExprId, ExprNode, Exprs, FunctionId, RelationalOp, UnaryFunction, VarId};
 use rustc_hash::FxHashMap;
 
-/// A leaf whose time derivative depends on the model.
+/// A leaf whose time derivative only the model can tell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum DerivativeLeaf {
     /// The value of a variable.
@@ -13,26 +15,30 @@ pub enum DerivativeLeaf {
     Der(VarId),
 }
 
-/// Partial derivatives by one leaf; every other leaf counts as constant. One value serves any number of expressions of
-/// one pool and remembers what it has done, so that shared parts are differentiated once.
+/// Partial derivatives by one leaf. Every other leaf counts as constant.
+/// One value serves any number of expressions of one pool, and remembers the derivatives of all nodes, so that shared
+/// subexpressions are differentiated once.
 #[derive(Clone, Debug)]
 pub struct Differentiator {
+    /// The derivative of each node seen so far.
     memo: FxHashMap<ExprId, ExprId>,
 }
 
 impl Differentiator {
-    /// Derivatives by `leaf`: `pool.var(v)`, `pool.der(v)`, `pool.pre(v)`, or any other node taken as a unit.
+    /// Derivatives by `leaf`: `pool.var(v)`, `pool.der(v)`, `pool.pre(v)`, or any other node that is to count as a
+    /// leaf.
     pub fn new(leaf: ExprId) -> Self {
         Differentiator { memo: std::iter::once((leaf, Exprs::ONE)).collect() }
     }
 
-    /// Derivatives along a direction: pairs of leaves and their derivatives, every other leaf counting as constant.
+    /// Derivatives along a direction, given by pairs of a leaf and its derivative. Other leaves count as constant.
     pub fn along(leaves: impl IntoIterator<Item = (ExprId, ExprId)>) -> Self {
         Differentiator { memo: leaves.into_iter().collect() }
     }
 
     /// The derivative of `e`.
     pub fn derive(&mut self, pool: &mut Exprs, e: ExprId) -> ExprId {
+        // Operands come before their node, and what is known is not entered again.
         for node in pool.reachable(&[e], |node| !self.memo.contains_key(&node)) {
             let derivative = node_derivative(pool, node, &self.memo);
             self.memo.insert(node, derivative);
@@ -41,16 +47,21 @@ impl Differentiator {
     }
 }
 
-/// Total derivatives by time. One value serves any number of expressions of one pool, as [`Differentiator`] does.
+/// Total derivatives by time. One value serves any number of expressions of one pool, as for [`Differentiator`].
 #[derive(Clone, Debug, Default)]
 pub struct TimeDerivative {
+    /// The time derivative of each node seen so far.
     memo: FxHashMap<ExprId, ExprId>,
 }
 
 impl TimeDerivative {
-    /// The time derivative of `e`. `leaf` says what the derivative of a variable or of a derivative is: another
-    /// expression, 0 for what is constant between events, or `None` for what cannot be differentiated, which is then
-    /// the error.
+    /// The time derivative of `e`.
+    /// `leaf` gives the derivative of a variable or of a derivative: another expression, or 0 for what is constant
+    /// between
+    /// events.
+    ///
+    /// # Errors
+    /// `leaf` returned `None` for the leaf in the error, which cannot be differentiated.
     pub fn derive(
         &mut self,
         pool: &mut Exprs,
@@ -60,6 +71,7 @@ impl TimeDerivative {
         for node in pool.reachable(&[e], |node| !self.memo.contains_key(&node)) {
             let derivative = match pool.node(node) {
                 ExprNode::Time => Exprs::ONE,
+                // The delay time is a parameter, so the derivative is delayed like the value.
                 ExprNode::Delay(a, time) => pool.delay(self.memo[&a], time),
                 ExprNode::Var(v) => leaf(pool, DerivativeLeaf::Var(v)).ok_or(DerivativeLeaf::Var(v))?,
                 ExprNode::Der(v) => leaf(pool, DerivativeLeaf::Der(v)).ok_or(DerivativeLeaf::Der(v))?,
@@ -72,12 +84,12 @@ impl TimeDerivative {
 }
 
 impl Exprs {
-    /// The derivative of `e` by `leaf`, as [`Differentiator`] computes it.
+    /// The derivative of `e` by `leaf`. For many derivatives a [`Differentiator`] is faster.
     pub fn differentiate(&mut self, e: ExprId, leaf: ExprId) -> ExprId {
         Differentiator::new(leaf).derive(self, e)
     }
 
-    /// The derivative of `e` by time, as [`TimeDerivative`] computes it.
+    /// The derivative of `e` by time. For many derivatives a [`TimeDerivative`] is faster.
     pub fn time_derivative(
         &mut self,
         e: ExprId,
@@ -87,12 +99,14 @@ impl Exprs {
     }
 }
 
-/// The derivative of a node whose arguments' derivatives are known. Leaves are constant.
+/// The derivative of a node from those of its operands. Leaves count as constant.
 fn node_derivative(pool: &mut Exprs, e: ExprId, memo: &FxHashMap<ExprId, ExprId>) -> ExprId {
+    // The rules take `None` for a zero, and then build nothing for it.
     let of = |a: ExprId| Some(memo[&a]).filter(|&d| d != Exprs::ZERO);
     let derivative = match pool.node(e) {
         ExprNode::Unary(op, a) => of(a).and_then(|da| rules::unary(pool, op, &a, &e, da)),
         ExprNode::Binary(op, a, b) => rules::binary(pool, op, (&a, &b, &e), of(a), of(b)),
+        // The condition has no derivative: at an event another branch is taken.
         ExprNode::If(c, a, b) => rules::branch(pool, c, of(a), of(b)),
         ExprNode::Homotopy(a, b) => Some(pool.homotopy(memo[&a], memo[&b])),
         ExprNode::Call(function, output, args) => Some(call_derivative(pool, function, output, args, memo)),
@@ -101,7 +115,7 @@ fn node_derivative(pool: &mut Exprs, e: ExprId, memo: &FxHashMap<ExprId, ExprId>
     derivative.unwrap_or(Exprs::ZERO)
 }
 
-/// The sum over the arguments of the function's derivative times the argument's.
+/// The chain rule for a call: the sum over the arguments of the function's derivative times the argument's.
 fn call_derivative(
     pool: &mut Exprs,
     function: FunctionId,

@@ -1,20 +1,24 @@
-//! Reference evaluation over the pool.
+//! Evaluates expressions on numbers. This is the reference for the kernels of the crate `solve`.
 //!
-//! Each node is computed once; of an `if` only the chosen branch is. Relations with and without event are evaluated as
-//! they stand, `homotopy` gives its first argument. Deep expressions do not recurse.
+//! Each node is computed once, and of an `if` only the branch that is taken. Relations are evaluated as they stand,
+//! with
+//! or without event; `homotopy` gives its first operand. Deep expressions do not recurse.
 
 use super::{ExprId, ExprNode, Exprs, math};
 use rustc_hash::FxHashMap;
 
-/// Remembers the values of nodes while the leaves stay as they are.
+/// The values of nodes. It is valid as long as the values of the leaves do not change.
 #[derive(Clone, Debug, Default)]
 pub struct EvaluationCache {
+    /// The value of each node computed so far.
     values: FxHashMap<ExprId, f64>,
+    /// Nodes to be computed; those on top are needed for those below.
     stack: Vec<ExprId>,
 }
 
 impl EvaluationCache {
-    /// The value of `e`. `leaf` gives the values of `Time`, `Var`, `Der`, `Pre`, `Sample`, `Initial` and `Terminal`.
+    /// The value of `e`. `leaf` gives the values of `Time`, `Var`, `Der`, `Pre`, `Sample`, `Initial` and `Terminal`
+    /// nodes.
     pub fn value(&mut self, pool: &Exprs, e: ExprId, leaf: &mut impl FnMut(ExprNode) -> f64) -> f64 {
         self.stack.push(e);
         while let Some(&top) = self.stack.last() {
@@ -25,7 +29,8 @@ impl EvaluationCache {
         self.values[&e]
     }
 
-    /// Computes a node whose arguments are known; else puts those on the stack that are needed first and says false.
+    /// Computes a node if its operands are known, and returns true.
+    /// Else it pushes the operands that are needed and returns false.
     fn finish(&mut self, pool: &Exprs, e: ExprId, leaf: &mut impl FnMut(ExprNode) -> f64) -> bool {
         let node = pool.node(e);
         let value = match node {
@@ -36,7 +41,7 @@ impl EvaluationCache {
                 };
                 self.known(if c == 0.0 { b } else { a })
             }
-            // at rest a delayed value is the value
+            // At rest a delayed value is the value itself.
             ExprNode::Homotopy(a, _) | ExprNode::Delay(a, _) => self.known(a),
             ExprNode::Num(bits) => Some(f64::from_bits(bits)),
             ExprNode::Time | ExprNode::Var(_) | ExprNode::Der(_) | ExprNode::Pre(_) => Some(leaf(node)),
@@ -55,6 +60,7 @@ impl EvaluationCache {
         value.is_some()
     }
 
+    /// The value of a node, which is pushed to be computed first if it is not known.
     fn known(&mut self, e: ExprId) -> Option<f64> {
         let value = self.values.get(&e).copied();
         if value.is_none() {
@@ -63,6 +69,7 @@ impl EvaluationCache {
         value
     }
 
+    /// The value of a node from those of its operands.
     fn combine(&self, pool: &Exprs, e: ExprId) -> f64 {
         let of = |a: ExprId| self.values[&a];
         match pool.node(e) {
@@ -77,13 +84,14 @@ impl EvaluationCache {
                 function.call(&pool.functions, &args, &mut out);
                 out[output as usize]
             }
+            // `finish` has handled all other kinds of nodes.
             _ => unreachable!("leaves, `if` and `homotopy` are computed where they are found"),
         }
     }
 }
 
 impl Exprs {
-    /// The value of `e`, given those of the leaves as [`EvaluationCache::value`] asks for them.
+    /// The value of `e`. `leaf` gives the values of the leaves, as for [`EvaluationCache::value`].
     pub fn eval(&self, e: ExprId, leaf: &mut impl FnMut(ExprNode) -> f64) -> f64 {
         EvaluationCache::default().value(self, e, leaf)
     }

@@ -1,15 +1,17 @@
-//! Expressions from text, for tests.
+//! Builds expressions from Modelica text, for tests.
+//! It knows what tests need and panics on anything else. `find` gives the variable of a name.
 
 use super::{BinaryFunction, ExprId, Exprs, RelationalOp, UnaryFunction, VarId};
 use bramah_syntax::ast::{BinaryOp, ComponentReference, Expr, ExprKind, UnaryOp};
 use bramah_syntax::diag::FileId;
 
-/// The expression that a text describes. Panics on what it does not know.
+/// The expression of a text. The names `time` and `pi` have their meaning; `der` and `pre` apply to names.
 pub fn read(pool: &mut Exprs, text: &str, find: &dyn Fn(&str) -> VarId) -> ExprId {
     let tree = bramah_syntax::parse_expression(FileId(0), text).value.unwrap_or_else(|| panic!("cannot read {text}"));
     build(pool, &tree, find)
 }
 
+/// The expression of a syntax tree.
 fn build(pool: &mut Exprs, tree: &Expr, find: &dyn Fn(&str) -> VarId) -> ExprId {
     match &tree.kind {
         #[allow(clippy::cast_precision_loss, reason = "small numbers")]
@@ -30,6 +32,7 @@ fn build(pool: &mut Exprs, tree: &Expr, find: &dyn Fn(&str) -> VarId) -> ExprId 
             binary(pool, *op, a, b)
         }
         ExprKind::If { branches, otherwise } => {
+            // From the last branch backwards: each `else` is the expression built so far.
             branches.iter().rev().fold(build(pool, otherwise, find), |rest, (c, a)| {
                 let (c, a) = (build(pool, c, find), build(pool, a, find));
                 pool.if_(c, a, rest)
@@ -41,10 +44,12 @@ fn build(pool: &mut Exprs, tree: &Expr, find: &dyn Fn(&str) -> VarId) -> ExprId 
     }
 }
 
+/// The first identifier of a reference. Names in tests have no dots.
 fn name(reference: &ComponentReference) -> &'static str {
     reference.parts[0].name.name.as_str()
 }
 
+/// An infix operator. Relations make events, as in a model.
 fn binary(pool: &mut Exprs, op: BinaryOp, a: ExprId, b: ExprId) -> ExprId {
     let rel = match op {
         BinaryOp::Lt => RelationalOp::Lt,
@@ -62,9 +67,11 @@ fn binary(pool: &mut Exprs, op: BinaryOp, a: ExprId, b: ExprId) -> ExprId {
         BinaryOp::Or => return pool.or(a, b),
         other => panic!("not in tests: {other:?}"),
     };
+    // All operators left are relations.
     pool.event_rel(rel, a, b)
 }
 
+/// A call of a built-in function.
 fn call(pool: &mut Exprs, function: &str, args: &[Expr], find: &dyn Fn(&str) -> VarId) -> ExprId {
     if let ("der" | "pre", ExprKind::Reference(reference)) = (function, &args[0].kind) {
         let v = find(name(reference));

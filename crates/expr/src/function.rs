@@ -1,31 +1,34 @@
-//! User functions with algorithm bodies that cannot be inlined: a small scalar program over numbered slots.
+//! User functions whose bodies cannot be written out as expressions: small scalar programs over numbered slots.
+//! The crate `model` builds them, [`super::interpret`] runs them, `solve` compiles them, and `tangent` differentiates
+//! them.
 //!
-//! Arrays are laid out row-major in consecutive slots, with sizes known when the function is built (one [`Function`]
-//! per combination of argument sizes). Slots `0..inputs` are the scalarised inputs.
+//! Arrays occupy consecutive slots, row by row. Their sizes are known when the function is built, so there is one
+//! [`Function`] for each combination of argument sizes. Slots `0..inputs` are the scalar inputs.
 
 use super::{BinaryFunction, FunctionId, RelationalOp, UnaryFunction};
 use std::sync::Arc;
 
-/// A function that is carried out in Rust: the same bits for the same arguments, however often it is asked.
+/// A function that is carried out in Rust. It must be pure: equal arguments give equal bits, however often it is
+/// called.
 pub trait ExternalFunction: std::fmt::Debug + Send + Sync {
-    /// One output; not a number where there is none.
+    /// One output, by its index. NaN if there is no value.
     fn value(&self, output: usize, args: &[f64]) -> f64;
 
-    /// The derivatives of all outputs by one argument, as a function of the same arguments; `None` where they are 0.
+    /// The derivatives of all outputs by one input, as a function of the same arguments. `None` if they are 0.
     fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>>;
 
-    /// What went wrong in the last call, where it gave no number.
+    /// The reason why the last call gave no number. `None` if it succeeded.
     fn trouble(&self) -> Option<String> {
         None
     }
 
-    /// What went wrong in any call so far of it, of its derivatives and of what belongs together with it.
+    /// The last failure of any call so far, of the function, its derivatives, and others that share its state.
     fn failure(&self) -> Option<String> {
         None
     }
 }
 
-/// A handle of such a function; two are equal where they are the same one.
+/// A shared function that is carried out in Rust. Two handles are equal if they are of the same object.
 #[derive(Clone, Debug)]
 pub struct ExternalFunctionHandle(pub Arc<dyn ExternalFunction>);
 
@@ -36,7 +39,7 @@ impl PartialEq for ExternalFunctionHandle {
 }
 
 impl Function {
-    /// The function that is carried out in Rust, where this one only calls it.
+    /// The function carried out in Rust, if this one assigns an output of it.
     pub fn external(&self) -> Option<&dyn ExternalFunction> {
         self.body.iter().find_map(|statement| match statement {
             SlotStatement::Assign(_, SlotExpr::External(function, ..)) => Some(&*function.0),
@@ -45,97 +48,97 @@ impl Function {
     }
 }
 
-/// A compiled function body.
+/// A function as a program over slots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Function {
-    /// The full name, as the user wrote it.
+    /// The full name as the user wrote it, for messages.
     pub name: String,
-    /// Number of scalar inputs: slots `0..inputs`.
+    /// The number of scalar inputs, which are in slots `0..inputs`.
     pub inputs: u32,
-    /// Number of slots in all.
+    /// The number of all slots: inputs, outputs and locals.
     pub slots: u32,
-    /// The slot of each scalar output.
+    /// The slot of each scalar output, in order.
     pub outputs: Vec<u32>,
-    /// The program.
+    /// The statements, executed in order.
     pub body: Vec<SlotStatement>,
 }
 
-/// A statement.
+/// A statement of such a program.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SlotStatement {
-    /// `slot := value`
+    /// `slot := value`.
     Assign(u32, SlotExpr),
-    /// `slots[base + offset] := value`; the offset is checked against `len`.
+    /// `slots[base + offset] := value`. An offset outside `0..len` ends the call.
     AssignAt {
-        /// First slot of the array.
+        /// The first slot of the array.
         base: u32,
-        /// Number of slots of the array.
+        /// The number of its slots.
         len: u32,
-        /// Zero-based row-major offset.
+        /// The offset of the element, row by row from 0.
         offset: SlotExpr,
-        /// The value.
+        /// The value to be stored.
         value: SlotExpr,
     },
-    /// Outputs of another function into slots (`None` skips one).
+    /// A call of another function, whose outputs are stored in slots.
     Call {
-        /// The function.
+        /// The function that is called.
         function: FunctionId,
         /// Its scalar arguments.
         args: Vec<SlotExpr>,
-        /// Where its scalar outputs go, by output number.
+        /// The slot for each output, in order. `None` drops an output.
         outputs: Vec<Option<u32>>,
     },
-    /// `if`
+    /// `if`: branches with their conditions in order, then the `else` branch.
     If(Vec<(SlotExpr, Vec<SlotStatement>)>, Vec<SlotStatement>),
-    /// `for slot in from:step:to`, bounds evaluated once.
+    /// `for slot in from:step:to`. The bounds are evaluated once, before the first turn.
     For {
-        /// The loop variable.
+        /// The slot of the loop variable.
         slot: u32,
-        /// First value.
+        /// The first value.
         from: SlotExpr,
-        /// Step.
+        /// The step, which may be negative.
         step: SlotExpr,
-        /// Last value.
+        /// The bound, included.
         to: SlotExpr,
-        /// The body.
+        /// The statements of the loop.
         body: Vec<SlotStatement>,
     },
-    /// `while`
+    /// `while`: the condition, and the statements of the loop.
     While(SlotExpr, Vec<SlotStatement>),
-    /// `break`
+    /// `break`: leaves the innermost loop.
     Break,
-    /// `return`
+    /// `return`: ends the function.
     Return,
-    /// `assert(condition, message)`: a failed one makes the outputs NaN and stops the call.
+    /// `assert(condition, message)`. If the condition is 0, the call ends and its outputs are NaN.
     Assert(SlotExpr, String),
 }
 
-/// A scalar expression over slots.
+/// A scalar expression over slots, as a tree without sharing.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SlotExpr {
     /// A number.
     Num(f64),
-    /// A slot.
+    /// The value of a slot.
     Slot(u32),
-    /// `slots[base + offset]`, offset checked against `len`.
+    /// `slots[base + offset]`. An offset outside `0..len` ends the call.
     At {
-        /// First slot.
+        /// The first slot of the array.
         base: u32,
-        /// Number of slots.
+        /// The number of its slots.
         len: u32,
-        /// Zero-based row-major offset.
+        /// The offset of the element, row by row from 0.
         offset: Box<SlotExpr>,
     },
-    /// A function of one argument.
+    /// An operator or function of one argument.
     Unary(UnaryFunction, Box<SlotExpr>),
-    /// A function of two arguments.
+    /// An operator or function of two arguments.
     Binary(BinaryFunction, Box<SlotExpr>, Box<SlotExpr>),
-    /// A relation.
+    /// A relation, whose value is 0 or 1.
     Rel(RelationalOp, Box<SlotExpr>, Box<SlotExpr>),
-    /// Only the chosen branch is evaluated.
+    /// The second expression if the first is not 0, else the third. Only that one is evaluated.
     If(Box<SlotExpr>, Box<SlotExpr>, Box<SlotExpr>),
-    /// One scalar output of another function.
+    /// One output of another function, by its index.
     Call(FunctionId, u32, Vec<SlotExpr>),
-    /// One output of a function carried out in Rust.
+    /// One output of a function that is carried out in Rust, by its index.
     External(ExternalFunctionHandle, u32, Vec<SlotExpr>),
 }

@@ -1,44 +1,45 @@
-//! Running a [`Function`]: the reference that native code is compared with.
+//! The interpreter of functions: runs a [`Function`] on numbers. Native code is compared with it.
 //!
-//! Slots start as 0. A call that goes on for too long, nests too deeply, leaves an array or fails an `assert` ends at
-//! once; its outputs are then NaN, so that the solver treats the point as one where the model has no value.
+//! All slots are 0 at the beginning. A call ends at once if it takes too many steps, nests too deeply, indexes outside
+//! an
+//! array, or fails an `assert`. Its outputs are then NaN, and the solver treats the point as one without a value.
 
 use super::function::{Function, SlotExpr, SlotStatement};
 use super::{FunctionId, math};
 
-/// Statements and loop turns that one outermost call may take, calls inside it included.
+/// The number of statements and loop turns that one outermost call may take, those of inner calls included.
 pub const STEP_BUDGET: u64 = 10_000_000;
 
-/// How deeply functions may call each other.
+/// The number of calls that may be active inside each other.
 pub const DEPTH_LIMIT: u32 = 200;
 
-/// Why a call has no value.
+/// The reason why a call has no value.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CallFailure {
-    /// More than [`STEP_BUDGET`] steps.
+    /// It took more than [`STEP_BUDGET`] steps.
     Steps {
-        /// The function that ran when the budget was used up.
+        /// The function that ran at that moment.
         function: String,
     },
-    /// More than [`DEPTH_LIMIT`] calls inside each other.
+    /// More than [`DEPTH_LIMIT`] calls were active inside each other.
     Depth {
-        /// The function that was called once too often.
+        /// The function whose call was one too many.
         function: String,
     },
-    /// An index outside its array.
+    /// An index outside of its array.
     Index {
-        /// The function.
+        /// The function with the index.
         function: String,
-        /// The zero-based row-major offset.
+        /// The offset, row by row from 0. It may be fractional, negative or NaN.
         offset: f64,
-        /// The number of elements.
+        /// The number of elements of the array.
         len: u32,
     },
-    /// A failed `assert`.
+    /// An `assert` failed.
     Assert {
-        /// The function.
+        /// The function with the assertion.
         function: String,
-        /// Its message.
+        /// The message of the assertion.
         message: String,
     },
 }
@@ -57,41 +58,50 @@ impl std::fmt::Display for CallFailure {
 }
 
 impl Function {
-    /// The outputs for these inputs; all NaN when the call fails. `all` is the pool's list of functions, `args` has
-    /// `inputs` values, `out` as many as there are outputs.
+    /// Computes all outputs, which are NaN if the call fails.
+    /// `all` is the pool's list of functions. `args` has `inputs` values, and `out` one element for each output.
     pub fn call(&self, all: &[Function], args: &[f64], out: &mut [f64]) {
         if self.try_call(all, args, out).is_err() {
             out.fill(f64::NAN);
         }
     }
 
-    /// As [`Function::call`], with the reason when there is no value; `out` is then not written.
+    /// As [`Function::call`], with the reason if there is no value. Then `out` is left as it was.
     pub fn try_call(&self, all: &[Function], args: &[f64], out: &mut [f64]) -> Result<(), CallFailure> {
         Interpreter { all, left: STEP_BUDGET, depth: 0 }.call(self, args.to_vec(), |output, value| out[output] = value)
     }
 }
 
-/// What ended a list of statements.
+/// How a list of statements ended.
 enum ExecutionFlow {
+    /// At its end.
     Next,
+    /// By `break`: the innermost loop ends.
     Break,
+    /// By `return`: the function ends.
     Return,
 }
 
-/// One outermost call.
+/// The state of one outermost call.
 struct Interpreter<'a> {
+    /// The functions of the pool.
     all: &'a [Function],
+    /// The steps that are left.
     left: u64,
+    /// The number of active calls.
     depth: u32,
 }
 
-/// One running function.
+/// The state of one active function.
 struct StackFrame<'a> {
+    /// The function.
     function: &'a Function,
+    /// The values of its slots.
     slots: Vec<f64>,
 }
 
 impl<'a> Interpreter<'a> {
+    /// Calls a function. `result` gets the index and value of each output.
     fn call(
         &mut self,
         function: &'a Function,
@@ -102,16 +112,22 @@ impl<'a> Interpreter<'a> {
             return Err(CallFailure::Depth { function: function.name.clone() });
         }
         self.depth += 1;
+        // The arguments become the first slots.
         args.resize(function.slots as usize, 0.0);
         let mut frame = StackFrame { function, slots: args };
         self.statements(&mut frame, &function.body)?;
         for (output, &slot) in function.outputs.iter().enumerate() {
             result(output, frame.slots[slot as usize]);
         }
+        // After an error the depth does not matter, because the outermost call ends too.
         self.depth -= 1;
         Ok(())
     }
 
+    /// Counts a step.
+    ///
+    /// # Errors
+    /// The budget is used up.
     fn step(&mut self, frame: &StackFrame) -> Result<(), CallFailure> {
         if self.left == 0 {
             return Err(CallFailure::Steps { function: frame.function.name.clone() });
@@ -120,6 +136,7 @@ impl<'a> Interpreter<'a> {
         Ok(())
     }
 
+    /// Executes statements in order, until one of them leaves the list.
     fn statements(
         &mut self,
         frame: &mut StackFrame<'a>,
@@ -135,10 +152,12 @@ impl<'a> Interpreter<'a> {
         Ok(ExecutionFlow::Next)
     }
 
+    /// Executes one statement.
     fn statement(&mut self, frame: &mut StackFrame<'a>, stmt: &'a SlotStatement) -> Result<ExecutionFlow, CallFailure> {
         match stmt {
             SlotStatement::Assign(slot, value) => frame.slots[*slot as usize] = self.term(frame, value)?,
             SlotStatement::AssignAt { base, len, offset, value } => {
+                // The value is computed before the offset, as in native code.
                 let value = self.term(frame, value)?;
                 let at = self.element(frame, *base, *len, offset)?;
                 frame.slots[at] = value;
@@ -176,6 +195,7 @@ impl<'a> Interpreter<'a> {
         Ok(ExecutionFlow::Next)
     }
 
+    /// Executes a `for` loop over the range `from`, `step`, `to`.
     fn count(
         &mut self,
         frame: &mut StackFrame<'a>,
@@ -186,11 +206,12 @@ impl<'a> Interpreter<'a> {
         let from = self.term(frame, range[0])?;
         let step = self.term(frame, range[1])?;
         let to = self.term(frame, range[2])?;
-        // A little more than the quotient, so that 0:0.1:1 has eleven values.
+        // The tolerance makes 0:0.1:1 have eleven values in spite of rounding.
         let last = ((to - from) / step + 1e-10).floor();
         let mut turn = 0.0;
         while turn <= last {
             self.step(frame)?;
+            // Computed from the number of the turn, so that rounding errors do not add up.
             frame.slots[slot as usize] = from + turn * step;
             match self.statements(frame, body)? {
                 ExecutionFlow::Next => {}
@@ -202,6 +223,7 @@ impl<'a> Interpreter<'a> {
         Ok(ExecutionFlow::Next)
     }
 
+    /// Executes a `while` loop.
     fn repeat(
         &mut self,
         frame: &mut StackFrame<'a>,
@@ -219,14 +241,17 @@ impl<'a> Interpreter<'a> {
         Ok(ExecutionFlow::Next)
     }
 
+    /// The function of an id.
     fn function(&self, id: FunctionId) -> &'a Function {
         &self.all[id.0 as usize]
     }
 
+    /// The values of several expressions, in order.
     fn terms(&mut self, frame: &StackFrame<'a>, terms: &'a [SlotExpr]) -> Result<Vec<f64>, CallFailure> {
         terms.iter().map(|term| self.term(frame, term)).collect()
     }
 
+    /// The value of an expression.
     fn term(&mut self, frame: &StackFrame<'a>, term: &'a SlotExpr) -> Result<f64, CallFailure> {
         Ok(match term {
             SlotExpr::Num(value) => *value,
@@ -266,6 +291,10 @@ impl<'a> Interpreter<'a> {
         })
     }
 
+    /// The slot of an element of an array.
+    ///
+    /// # Errors
+    /// The offset is not in `0..len`. NaN is not either.
     fn element(
         &mut self,
         frame: &StackFrame<'a>,

@@ -1,8 +1,10 @@
-//! The one expression type from `flat` down: a pool of hash-consed scalar nodes.
+//! Scalar expressions from the flat model on: a pool of hash-consed nodes.
+//! The crate `model` builds expressions here from the evaluated text; `structure` differentiates and rewrites them;
+//! `solve` lowers them to kernels.
 //!
-//! An [`ExprId`] is a node of a directed acyclic graph inside one [`Exprs`] pool; equal expressions have equal ids, so
-//! sharing is free and comparison is one integer. Every value is an `f64`: Booleans are 0 and 1, enumeration values
-//! count from 1, Integers are exact up to 2^53.
+//! An [`ExprId`] is a node of a directed acyclic graph inside one [`Exprs`] pool. Equal expressions have equal ids, so
+//! common subexpressions are shared and a comparison is one of integers.
+//! Every value is an `f64`: Booleans are 0 and 1, enumeration literals count from 1, Integers are exact up to 2^53.
 
 pub mod types;
 pub mod units;
@@ -25,15 +27,15 @@ use hashbrown::hash_table::{Entry, HashTable};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::hash::{BuildHasher, Hash, Hasher};
 
-/// A flat variable: index into `FlatModel::variables` and, later, `Dae::variables`.
+/// A scalar variable: index into `FlatModel::variables` and, later, `Dae::variables`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct VarId(pub u32);
 
-/// A user function that could not be written as one expression: index into `Exprs::functions`.
+/// A user function that stays a call: index into [`Exprs::functions`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FunctionId(pub u32);
 
-/// A node in an [`Exprs`] pool.
+/// A node in an [`Exprs`] pool. It is meaningless in another pool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ExprId(pub u32);
 
@@ -51,21 +53,23 @@ impl ExprId {
     }
 }
 
-/// Arguments of a call: a stretch of `Exprs::args`.
+/// The arguments of a call: a range of the pool's argument list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ArgumentRange {
+    /// The index of the first argument.
     start: u32,
+    /// The number of arguments.
     len: u32,
 }
 
-/// Functions of one argument.
+/// Operators and functions of one argument.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the mathematical functions of these names")]
 pub enum UnaryFunction {
     Neg,
     Not,
     Abs,
-    /// -1, 0 or 1.
+    /// The sign: -1, 0 or 1.
     Sign,
     Sqrt,
     Exp,
@@ -80,12 +84,12 @@ pub enum UnaryFunction {
     Sinh,
     Cosh,
     Tanh,
-    /// Largest whole number not above the argument; without event.
+    /// The largest whole number not above the argument. It makes no event; see [`ExprNode::EventFloor`].
     Floor,
 }
 
 impl UnaryFunction {
-    /// All of them.
+    /// All functions in the order of their declaration.
     pub const ALL: [UnaryFunction; 18] = [
         UnaryFunction::Neg,
         UnaryFunction::Not,
@@ -108,7 +112,7 @@ impl UnaryFunction {
     ];
 }
 
-/// Functions of two arguments.
+/// Operators and functions of two arguments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the operators of these names")]
 pub enum BinaryFunction {
@@ -124,8 +128,9 @@ pub enum BinaryFunction {
     Or,
 }
 
-/// Relations. `Gt` and `Ge` are written as `Lt` and `Le` with sides swapped where only the value counts; they stay as
-/// written here so that messages show what the user wrote.
+/// Relations between two values.
+/// `Gt` and `Ge` could be written as `Lt` and `Le` with exchanged sides. They are kept, so that messages show what the
+/// user wrote.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[allow(missing_docs, reason = "the relations of these names")]
 pub enum RelationalOp {
@@ -137,10 +142,10 @@ pub enum RelationalOp {
     Ne,
 }
 
-/// One node. Build nodes through the methods of [`Exprs`], which simplify and share.
+/// One node. The methods of [`Exprs`] build nodes; they simplify and share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ExprNode {
-    /// A number, by its bits.
+    /// A number, by the bits of its `f64`, so that nodes can be compared and hashed.
     Num(u64),
     /// Simulated time in seconds.
     Time,
@@ -148,39 +153,42 @@ pub enum ExprNode {
     Var(VarId),
     /// The time derivative of a variable.
     Der(VarId),
-    /// The value of a discrete-valued variable before the event.
+    /// The value of a discrete variable before the current event (`pre` of Modelica).
     Pre(VarId),
     /// A function of one argument.
     Unary(UnaryFunction, ExprId),
     /// A function of two arguments.
     Binary(BinaryFunction, ExprId, ExprId),
-    /// A relation evaluated as it stands; makes no event (inside `noEvent`, or between discrete values).
+    /// A relation evaluated as it stands, without an event: inside `noEvent`, or between discrete values.
     Rel(RelationalOp, ExprId, ExprId),
     /// A relation whose change is an event. `structure` replaces it by a discrete variable with a zero crossing.
     EventRel(RelationalOp, ExprId, ExprId),
     /// `floor` whose change is an event. `structure` replaces it by a discrete variable with zero crossings.
     EventFloor(ExprId),
-    /// If the condition is not 0 the second, else the third. Only the chosen one need be finite.
+    /// The second operand if the first is not 0, else the third. Only the one that is taken needs to be finite.
     If(ExprId, ExprId, ExprId),
-    /// True at `start + k interval`, k = 0, 1, ... Both are parameter expressions.
+    /// True at the times `start + k*interval` for k = 0, 1, ... Both operands are parameter expressions.
     Sample(ExprId, ExprId),
-    /// `delay(a, time)`: the value so long ago, before the start that at the start; the time is a parameter expression.
-    /// `structure` replaces it by an input that the run itself records.
+    /// `delay(a, time)`: the value of `a` a time ago (s), or its start value before the start. The time is a parameter
+    /// expression. `structure` replaces the node by an input that the run itself records.
     Delay(ExprId, ExprId),
-    /// True during initialization.
+    /// True during initialization, else false.
     Initial,
     /// True at the end of a successful run.
     Terminal,
-    /// `homotopy(actual, simplified)`.
+    /// `homotopy(actual, simplified)`: `actual`, except while the solver approaches a start from the simplified model.
     Homotopy(ExprId, ExprId),
-    /// One output of a user function, with scalarised arguments.
+    /// One output of a user function, by its index, with scalar arguments.
     Call(FunctionId, u32, ArgumentRange),
 }
 
-/// Two words a node instead of one write per field: the pool is asked for every node of every equation. The bytes of
-/// numbers are swapped, for small whole numbers differ in their highest bits only, which the hash would not spread.
+/// Hashes two words a node, which is faster than one write for each field: the pool looks up every node that is built.
+/// The bytes of numbers are swapped, because small whole numbers differ in their highest bits only, which this hash
+/// would not spread.
 impl Hash for ExprNode {
     fn hash<H: Hasher>(&self, state: &mut H) {
+        // High bits keep nodes with a free 32-bit field apart from those with small tags. Collisions cost time, not
+        // correctness.
         let (kind, a, b) = match *self {
             ExprNode::Num(bits) => return state.write_u64(bits.swap_bytes()),
             ExprNode::Time => (1, 0, 0),
@@ -205,25 +213,30 @@ impl Hash for ExprNode {
     }
 }
 
+/// The hash of a node in the index of the pool.
 fn hash(node: &ExprNode) -> u64 {
     FxBuildHasher.hash_one(node)
 }
 
-/// A pool of expressions. Node 0 is the number 0 and node 1 the number 1.
+/// A pool of expressions. It only grows; [`Exprs::compact`] makes it small again.
+/// Node 0 is the number 0, and node 1 the number 1.
 #[derive(Clone, Debug)]
 pub struct Exprs {
+    /// All nodes; an [`ExprId`] is an index here.
     nodes: Vec<ExprNode>,
-    /// Where each node stands: the ids alone, for the nodes are in the list already.
+    /// The ids of all nodes by the hash of their nodes. The nodes themselves are in `nodes` only.
     index: HashTable<ExprId>,
-    /// The node of each variable's value, 0 for none: half of all requests are for these.
+    /// The node of each variable's value, or node 0 if there is none. Half of all requests are for these.
     leaves: Vec<ExprId>,
+    /// The arguments of all calls, one list after the other.
     args: Vec<ExprId>,
+    /// The range of each argument list in `args`.
     arg_index: FxHashMap<Box<[ExprId]>, ArgumentRange>,
-    /// The function that takes values and tangents and returns tangents, by original.
+    /// For each function its tangent function, which takes values and tangents and returns tangents.
     tangents: FxHashMap<FunctionId, FunctionId>,
-    /// The derivative of all outputs by one input, by original and input.
+    /// For each function and input the function of the derivatives of all outputs by that input.
     partials: FxHashMap<(FunctionId, u32), FunctionId>,
-    /// User functions that stay calls.
+    /// User functions that could not be written as expressions. A [`FunctionId`] is an index here.
     pub functions: Vec<function::Function>,
 }
 
@@ -239,6 +252,7 @@ impl Default for Exprs {
             partials: FxHashMap::default(),
             functions: Vec::new(),
         };
+        // The ids `ZERO` and `ONE` rely on this order.
         pool.num(0.0);
         pool.num(1.0);
         pool
@@ -246,38 +260,39 @@ impl Default for Exprs {
 }
 
 impl Exprs {
-    /// The number 0, also `false`.
+    /// The number 0, which is also `false`.
     pub const ZERO: ExprId = ExprId(0);
-    /// The number 1, also `true`.
+    /// The number 1, which is also `true`.
     pub const ONE: ExprId = ExprId(1);
 
-    /// The node behind an id.
+    /// The node of an id.
     pub fn node(&self, e: ExprId) -> ExprNode {
         self.nodes[e.index()]
     }
 
-    /// How many nodes there are; ids are `0..len`, and a node's arguments have smaller ids than the node.
+    /// The number of nodes. Ids are `0..len`, and the operands of a node have smaller ids than the node.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Never: the pool always holds 0 and 1.
+    /// Always false: the pool holds 0 and 1 from the beginning.
     pub fn is_empty(&self) -> bool {
         false
     }
 
-    /// The arguments of a call.
+    /// The arguments of a call, in order.
     pub fn args(&self, args: ArgumentRange) -> &[ExprId] {
         &self.args[args.start as usize..(args.start + args.len) as usize]
     }
 
-    /// The id of exactly this node, without simplification.
+    /// The id of exactly this node, without simplification. It is added if it is new.
     pub fn intern(&mut self, node: ExprNode) -> ExprId {
         let nodes = &self.nodes;
         let same = |e: &ExprId| nodes[e.index()] == node;
         match self.index.entry(hash(&node), same, |e| hash(&nodes[e.index()])) {
             Entry::Occupied(found) => *found.get(),
             Entry::Vacant(place) => {
+                // A new node stands behind its operands, so that ascending ids are an order of evaluation.
                 let e = ExprId(u32::try_from(nodes.len()).expect("fewer than 2^32 nodes"));
                 place.insert(e);
                 self.nodes.push(node);
@@ -286,7 +301,7 @@ impl Exprs {
         }
     }
 
-    /// The id of exactly this node, if it is there.
+    /// The id of exactly this node. `None` if it is not in the pool.
     fn find(&self, node: &ExprNode) -> Option<ExprId> {
         self.index.find(hash(node), |e| self.nodes[e.index()] == *node).copied()
     }
@@ -299,33 +314,36 @@ impl Exprs {
         }
     }
 
-    /// A number. Minus zero becomes zero so that equal numbers are one node.
+    /// A number. Minus zero becomes zero, so that equal numbers are one node.
     pub fn num(&mut self, value: f64) -> ExprId {
         let value = if value == 0.0 { 0.0 } else { value };
         self.intern(ExprNode::Num(value.to_bits()))
     }
 
-    /// A truth value.
+    /// A Boolean value as a number.
     pub fn boolean(&mut self, value: bool) -> ExprId {
         if value { Self::ONE } else { Self::ZERO }
     }
 
-    /// Time.
+    /// Simulated time (s).
     pub fn time(&mut self) -> ExprId {
         self.intern(ExprNode::Time)
     }
 
     /// The value of a variable.
     pub fn var(&mut self, v: VarId) -> ExprId {
+        // Node 0 stands for "none", which is no variable.
         match self.leaves.get(v.index()) {
             Some(&e) if e != Self::ZERO => e,
             _ => self.new_leaf(v),
         }
     }
 
+    /// The node of a variable that is not in `leaves` yet.
     fn new_leaf(&mut self, v: VarId) -> ExprId {
         let (e, known) = (self.intern(ExprNode::Var(v)), self.leaves.len());
-        // locals of functions have numbers far away
+        // Locals of functions have very large indices, for which the table would become too long. They are found by
+        // hash.
         if v.index() < 2 * known + 1024 {
             self.leaves.resize(known.max(v.index() + 1), Self::ZERO);
             self.leaves[v.index()] = e;
@@ -333,22 +351,23 @@ impl Exprs {
         e
     }
 
-    /// The derivative of a variable.
+    /// The time derivative of a variable.
     pub fn der(&mut self, v: VarId) -> ExprId {
         self.intern(ExprNode::Der(v))
     }
 
-    /// The value of a variable before the event.
+    /// The value of a discrete variable before the current event.
     pub fn pre(&mut self, v: VarId) -> ExprId {
         self.intern(ExprNode::Pre(v))
     }
 
-    /// A call of a user function; one node per output.
+    /// One output of a call. Several outputs are several nodes with the same arguments.
     pub fn call(&mut self, function: FunctionId, output: u32, args: &[ExprId]) -> ExprId {
         let args = self.intern_args(args);
         self.intern(ExprNode::Call(function, output, args))
     }
 
+    /// The range of an argument list, which is added if it is new.
     fn intern_args(&mut self, args: &[ExprId]) -> ArgumentRange {
         if let Some(&a) = self.arg_index.get(args) {
             return a;

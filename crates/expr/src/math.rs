@@ -1,29 +1,30 @@
-//! The arithmetic of every node, shared by the interpreters and by native code so that both agree to the bit.
+//! The arithmetic of all nodes, on numbers. Interpreters and native code share it, so that both agree to the bit.
 //!
-//! Truth values are 0 and 1; anything but 0 counts as true. The functions of one and two arguments that are more than
-//! one machine instruction exist as `extern "C"` functions, to be called from native code.
+//! Boolean values are 0 and 1; any number but 0 counts as true. Functions that are more than one machine instruction
+//! are
+//! `extern "C"`, so that native code can call them.
 
 use super::{BinaryFunction, RelationalOp, UnaryFunction};
 
 /// How a power with a given exponent is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PowerMethod {
-    /// Whole exponents of magnitude up to [`LARGEST_WHOLE_POWER`]: square and multiply from the lowest bit, and one
-    /// division `1/x^n` at the end when the exponent is negative.
+    /// An integer exponent up to [`LARGEST_WHOLE_POWER`] in magnitude: square and multiply, from the lowest bit. For a
+    /// negative exponent the result is `1/x^n`, with one division at the end.
     Whole(i32),
-    /// Exponent 0.5: `sqrt(x)`.
+    /// Exponent 0.5, as `sqrt(x)`.
     Sqrt,
-    /// Exponent 0.25: `sqrt(sqrt(x))`.
+    /// Exponent 0.25, as `sqrt(sqrt(x))`.
     FourthRoot,
-    /// The general function of the system's mathematical library.
+    /// Any other exponent, by the mathematical library of the system.
     General,
 }
 
-/// Powers up to this one are products.
+/// The largest exponent whose powers are computed as products.
 pub const LARGEST_WHOLE_POWER: i32 = 16;
 
 impl PowerMethod {
-    /// The way for this exponent. Native code that knows the exponent may write the same operations in line.
+    /// The method for an exponent. Native code that knows the exponent may write the same operations in line.
     pub fn of(exponent: f64) -> PowerMethod {
         if exponent == 0.5 {
             PowerMethod::Sqrt
@@ -38,7 +39,8 @@ impl PowerMethod {
     }
 }
 
-/// `x^n` by squaring, from the lowest bit of the exponent; the order of the products is part of the result.
+/// `x^n` by repeated squaring, from the lowest bit of the exponent on.
+/// The order of the products determines the rounding, so native code must keep it.
 fn whole_power(x: f64, n: i32) -> f64 {
     let mut left = n.unsigned_abs();
     let mut square = x;
@@ -48,6 +50,7 @@ fn whole_power(x: f64, n: i32) -> f64 {
             product = Some(product.map_or(square, |p| p * square));
         }
         left >>= 1;
+        // A last square would not be used, and might overflow.
         if left > 0 {
             square *= square;
         }
@@ -56,7 +59,7 @@ fn whole_power(x: f64, n: i32) -> f64 {
     if n < 0 { 1.0 / value } else { value }
 }
 
-/// `x^y`, by the way that [`PowerMethod::of`] names.
+/// `x^y`, by the method of [`PowerMethod::of`].
 pub extern "C" fn pow(x: f64, y: f64) -> f64 {
     match PowerMethod::of(y) {
         PowerMethod::Whole(n) => whole_power(x, n),
@@ -66,105 +69,106 @@ pub extern "C" fn pow(x: f64, y: f64) -> f64 {
     }
 }
 
-/// `e^x`
+/// `e^x`.
 pub extern "C" fn exp(x: f64) -> f64 {
     x.exp()
 }
 
-/// Natural logarithm.
+/// The natural logarithm.
 pub extern "C" fn log(x: f64) -> f64 {
     x.ln()
 }
 
-/// Logarithm to base 10.
+/// The logarithm to base 10.
 pub extern "C" fn log10(x: f64) -> f64 {
     x.log10()
 }
 
-/// Sine.
+/// The sine of an angle in rad.
 pub extern "C" fn sin(x: f64) -> f64 {
     x.sin()
 }
 
-/// Cosine.
+/// The cosine of an angle in rad.
 pub extern "C" fn cos(x: f64) -> f64 {
     x.cos()
 }
 
-/// Tangent.
+/// The tangent of an angle in rad.
 pub extern "C" fn tan(x: f64) -> f64 {
     x.tan()
 }
 
-/// Inverse sine.
+/// The inverse sine in rad.
 pub extern "C" fn asin(x: f64) -> f64 {
     x.asin()
 }
 
-/// Inverse cosine.
+/// The inverse cosine in rad.
 pub extern "C" fn acos(x: f64) -> f64 {
     x.acos()
 }
 
-/// Inverse tangent.
+/// The inverse tangent in rad.
 pub extern "C" fn atan(x: f64) -> f64 {
     x.atan()
 }
 
-/// Hyperbolic sine.
+/// The hyperbolic sine.
 pub extern "C" fn sinh(x: f64) -> f64 {
     x.sinh()
 }
 
-/// Hyperbolic cosine.
+/// The hyperbolic cosine.
 pub extern "C" fn cosh(x: f64) -> f64 {
     x.cosh()
 }
 
-/// Hyperbolic tangent.
+/// The hyperbolic tangent.
 pub extern "C" fn tanh(x: f64) -> f64 {
     x.tanh()
 }
 
-/// The angle of the point `(x, y)`, above -pi and up to pi. Simplification does not keep the sign of a zero, so it has
-/// none here.
+/// The angle of the point `(x, y)` in rad, above -pi and up to pi.
+/// The sign of a zero is ignored, because simplification does not keep it either.
 pub extern "C" fn atan2(y: f64, x: f64) -> f64 {
-    // -0 + 0 is 0
+    // Adding 0 makes 0 of -0.
     (y + 0.0).atan2(x + 0.0)
 }
 
-/// -1, 0 or 1; NaN stays NaN.
+/// The sign: -1, 0 or 1. NaN stays NaN.
 pub extern "C" fn sign(x: f64) -> f64 {
     if x > 0.0 {
         1.0
     } else if x < 0.0 {
         -1.0
     } else {
+        // Makes 0 of -0, and keeps NaN.
         x + 0.0
     }
 }
 
-/// Largest whole number not above `x`.
+/// The largest whole number not above `x`.
 pub extern "C" fn floor(x: f64) -> f64 {
     x.floor()
 }
 
-/// The first when it is not above the second, else the second.
+/// The first value if it is not above the second, else the second. NaN if either is NaN.
 pub extern "C" fn min(a: f64, b: f64) -> f64 {
     if a <= b || a.is_nan() { a } else { b }
 }
 
-/// The first when it is not below the second, else the second.
+/// The first value if it is not below the second, else the second. NaN if either is NaN.
 pub extern "C" fn max(a: f64, b: f64) -> f64 {
     if a >= b || a.is_nan() { a } else { b }
 }
 
-/// 1 or 0.
+/// A Boolean value as 1 or 0.
 pub fn truth(value: bool) -> f64 {
     f64::from(u8::from(value))
 }
 
-/// The value of a function of one argument.
+/// The value of an operator or function of one argument.
 pub fn unary(op: UnaryFunction, x: f64) -> f64 {
     match op {
         UnaryFunction::Neg => -x,
@@ -188,7 +192,7 @@ pub fn unary(op: UnaryFunction, x: f64) -> f64 {
     }
 }
 
-/// The value of a function of two arguments.
+/// The value of an operator or function of two arguments.
 pub fn binary(op: BinaryFunction, a: f64, b: f64) -> f64 {
     match op {
         BinaryFunction::Add => a + b,
@@ -204,7 +208,7 @@ pub fn binary(op: BinaryFunction, a: f64, b: f64) -> f64 {
     }
 }
 
-/// Whether a relation holds.
+/// True if a relation holds. With NaN only `<>` does.
 pub fn holds(rel: RelationalOp, a: f64, b: f64) -> bool {
     match rel {
         RelationalOp::Lt => a < b,

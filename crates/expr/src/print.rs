@@ -1,15 +1,17 @@
-//! Expressions in Modelica syntax.
+//! Prints expressions in Modelica syntax, for messages, listings of equations and tests.
 //!
-//! Brackets stand only where the text would otherwise mean something else; `a + (b + c)` keeps them, because it rounds
-//! differently. Relations are printed without `noEvent`. What the pool shares is printed as often as it is used, so
-//! long expressions are cut off where a limit is set, and always at [`LONGEST`].
+//! Brackets stand only where the text would otherwise mean something else. `a + (b + c)` keeps them, because it rounds
+//! differently. Relations are printed without `noEvent`.
+//! Shared subexpressions are printed wherever they occur, so the text may be much longer than the graph. It is cut off
+//! at
+//! a given limit, and always at [`LONGEST`].
 
 use super::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction, VarId};
 
-/// No text is longer than about this many bytes.
+/// The largest length of a text in bytes, approximately.
 pub const LONGEST: usize = 100_000;
 
-/// How tightly an operator binds; arguments that bind less tightly than asked are put in brackets.
+/// Operator precedences. An operand that binds less tightly than required is put in brackets.
 mod bind {
     pub const WHOLE: u8 = 0;
     pub const OR: u8 = 1;
@@ -22,35 +24,42 @@ mod bind {
     pub const PRIMARY: u8 = 8;
 }
 
-/// What is still to be written; the last one is next.
+/// A piece of text that is still to be written. The pieces are a stack, whose top is next.
 enum PrintPiece {
+    /// A fixed text.
     Text(&'static str),
+    /// A name or number.
     Name(String),
-    /// An expression that must bind at least so tightly; `true` when numbers mean truth values.
+    /// An expression, the least precedence it must have, and whether numbers in it mean Boolean values.
     Expr(ExprId, u8, bool),
 }
 
-/// A text being written.
+/// A text under construction. A stack of pieces instead of recursion allows deep expressions.
 struct ExprPrinter<'a> {
+    /// The pool of the expressions.
     pool: &'a Exprs,
+    /// Gives the names of variables.
     names: &'a dyn Fn(VarId) -> String,
-    /// Significant digits of numbers, or as many as it takes.
+    /// The significant digits of numbers. `None` prints the shortest text that reads back as the same number.
     digits: Option<usize>,
+    /// The pieces still to be written, the next one last.
     todo: Vec<PrintPiece>,
+    /// The text so far.
     text: String,
 }
 
 impl Exprs {
-    /// The whole expression, numbers with as many digits as it takes to read back the same.
+    /// The complete expression, with numbers that read back as the same values.
     pub fn print(&self, e: ExprId, names: &dyn Fn(VarId) -> String) -> String {
         self.print_within(e, names, None, LONGEST)
     }
 
-    /// For messages: numbers with 6 digits, and cut off with `...` after about `limit` bytes.
+    /// The expression for messages: numbers with 6 digits, and `...` after about `limit` bytes.
     pub fn print_short(&self, e: ExprId, names: &dyn Fn(VarId) -> String, limit: usize) -> String {
         self.print_within(e, names, Some(6), limit)
     }
 
+    /// Prints until all is written, or the limit is exceeded.
     fn print_within(&self, e: ExprId, names: &dyn Fn(VarId) -> String, digits: Option<usize>, limit: usize) -> String {
         let mut printer = ExprPrinter { pool: self, names, digits, todo: vec![], text: String::new() };
         printer.todo.push(PrintPiece::Expr(e, bind::WHOLE, false));
@@ -70,19 +79,21 @@ impl Exprs {
 }
 
 impl ExprPrinter<'_> {
+    /// Puts the pieces of an expression on the stack, in brackets if it binds less tightly than `least`.
     fn expression(&mut self, e: ExprId, least: u8, truth: bool) {
         let (binding, pieces) = self.pieces(e, truth);
         let brackets = binding < least;
         if brackets {
             self.todo.push(PrintPiece::Text(")"));
         }
+        // The stack is read from its end.
         self.todo.extend(pieces.into_iter().rev());
         if brackets {
             self.todo.push(PrintPiece::Text("("));
         }
     }
 
-    /// The parts of one node's text, and how tightly the whole binds.
+    /// The pieces of one node's text, and its precedence.
     fn pieces(&self, e: ExprId, truth: bool) -> (u8, Vec<PrintPiece>) {
         use PrintPiece::{Expr, Name, Text};
         let name = |v: VarId| Name((self.names)(v));
@@ -111,6 +122,7 @@ impl ExprPrinter<'_> {
                 (bind::REL, vec![Expr(a, bind::SUM, false), Text(sign), Expr(b, bind::SUM, false)])
             }
             ExprNode::If(c, a, b) => {
+                // The branches have the type of the expression, so that truth values in them are printed as such.
                 let branch = |e| Expr(e, bind::WHOLE, truth);
                 let pieces =
                     vec![Text("if "), Expr(c, bind::OR, true), Text(" then "), branch(a), Text(" else "), branch(b)];
@@ -123,6 +135,7 @@ impl ExprPrinter<'_> {
                 let function = &self.pool.functions[function.0 as usize];
                 let mut pieces = vec![Name(function.name.clone()), Text("(")];
                 arguments(&mut pieces, self.pool.args(args));
+                // Modelica has no syntax for one output of several; its number stands behind the call.
                 if function.outputs.len() > 1 {
                     pieces.push(Name(format!("[{}]", output + 1)));
                 }
@@ -131,6 +144,7 @@ impl ExprPrinter<'_> {
         }
     }
 
+    /// A number, or a Boolean value if `truth` is true. A negative number binds like a sum.
     fn number(&self, value: f64, truth: bool) -> (u8, Vec<PrintPiece>) {
         if truth {
             return (bind::PRIMARY, vec![PrintPiece::Text(if value == 0.0 { "false" } else { "true" })]);
@@ -151,12 +165,16 @@ fn arguments(pieces: &mut Vec<PrintPiece>, args: &[ExprId]) {
     pieces.push(PrintPiece::Text(")"));
 }
 
+/// A call with its arguments, and its precedence.
 fn call(name: &'static str, args: &[ExprId]) -> (u8, Vec<PrintPiece>) {
     let mut pieces = vec![PrintPiece::Text(name), PrintPiece::Text("(")];
     arguments(&mut pieces, args);
     (bind::PRIMARY, pieces)
 }
 
+/// An infix operator or a function of two arguments. The right operand must bind more tightly, since operators
+/// associate
+/// to the left; powers do not associate.
 fn binary(op: BinaryFunction, a: ExprId, b: ExprId) -> (u8, Vec<PrintPiece>) {
     let (own, left, sign, right) = match op {
         BinaryFunction::Add => (bind::SUM, bind::SUM, " + ", bind::PRODUCT),
@@ -174,7 +192,7 @@ fn binary(op: BinaryFunction, a: ExprId, b: ExprId) -> (u8, Vec<PrintPiece>) {
     (own, vec![PrintPiece::Expr(a, left, truth), PrintPiece::Text(sign), PrintPiece::Expr(b, right, truth)])
 }
 
-/// The Modelica name of a function of one argument.
+/// The Modelica name of an operator or function of one argument.
 fn unary_name(op: UnaryFunction) -> &'static str {
     match op {
         UnaryFunction::Neg => "-",
@@ -198,8 +216,8 @@ fn unary_name(op: UnaryFunction) -> &'static str {
     }
 }
 
-/// A number as text: shortest that reads back the same, or rounded to so many significant digits. Powers of ten are
-/// used from 1e5 up and below 1e-3, where they are not longer.
+/// A number as text: the shortest that reads back as the same value, or rounded to some significant digits.
+/// Powers of ten are used from 1e5 on and below 1e-3, if they are not longer.
 pub fn number(value: f64, digits: Option<usize>) -> String {
     let value = match digits {
         Some(digits) if value.is_finite() => format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value),

@@ -1,36 +1,48 @@
-//! The rules of differentiation, written once for expressions and for the terms of functions.
+//! The rules of differentiation, written once for expressions of the pool and for those over slots.
+//! [`super::differentiate`] and [`super::tangent`] provide the algebra and call the rules for each node.
 //!
-//! A derivative of `None` is a structural zero. At a kink (`abs`, `min`, `max`) the derivative is the one of a
-//! neighbouring side, never a mean; `sign`, `floor`, relations and truth values have the derivative 0.
+//! A derivative of `None` is a structural zero. At a kink (`abs`, `min`, `max`) the derivative is that of one side,
+//! never
+//! a mean. `sign`, `floor`, relations and Boolean operators have derivative 0.
 
 use super::{BinaryFunction, RelationalOp, UnaryFunction};
 
-/// What the rules need of an expression type.
+/// The operations that the rules need of a type of expressions.
 pub(super) trait ExprAlgebra {
     /// An expression.
     type E: Clone;
+    /// A number.
     fn num(&mut self, value: f64) -> Self::E;
+    /// An operator or function of one argument.
     fn unary(&mut self, op: UnaryFunction, a: Self::E) -> Self::E;
+    /// An operator or function of two arguments.
     fn binary(&mut self, op: BinaryFunction, a: Self::E, b: Self::E) -> Self::E;
+    /// A relation without event.
     fn rel(&mut self, rel: RelationalOp, a: Self::E, b: Self::E) -> Self::E;
+    /// `if c then a else b`.
     fn if_(&mut self, c: Self::E, a: Self::E, b: Self::E) -> Self::E;
 
+    /// `a + b`.
     fn add(&mut self, a: Self::E, b: Self::E) -> Self::E {
         self.binary(BinaryFunction::Add, a, b)
     }
+    /// `a - b`.
     fn sub(&mut self, a: Self::E, b: Self::E) -> Self::E {
         self.binary(BinaryFunction::Sub, a, b)
     }
+    /// `a*b`.
     fn mul(&mut self, a: Self::E, b: Self::E) -> Self::E {
         self.binary(BinaryFunction::Mul, a, b)
     }
+    /// `a/b`.
     fn div(&mut self, a: Self::E, b: Self::E) -> Self::E {
         self.binary(BinaryFunction::Div, a, b)
     }
+    /// `-a`.
     fn neg(&mut self, a: Self::E) -> Self::E {
         self.unary(UnaryFunction::Neg, a)
     }
-    /// `1 + sign*a^2`
+    /// `1 + a^2` or `1 - a^2`, by the operator `sign`.
     fn one_and_square(&mut self, sign: BinaryFunction, a: Self::E) -> Self::E {
         let two = self.num(2.0);
         let square = self.binary(BinaryFunction::Pow, a, two);
@@ -39,7 +51,8 @@ pub(super) trait ExprAlgebra {
     }
 }
 
-/// The derivative of `y = op(x)`, given that of `x`.
+/// The derivative of `y = op(x)`, from that of `x`. `None` if it is 0.
+/// Rules use `y` where they can, because its value is computed anyway.
 pub(super) fn unary<A: ExprAlgebra>(k: &mut A, op: UnaryFunction, x: &A::E, y: &A::E, dx: A::E) -> Option<A::E> {
     let x = x.clone();
     let y = y.clone();
@@ -48,6 +61,7 @@ pub(super) fn unary<A: ExprAlgebra>(k: &mut A, op: UnaryFunction, x: &A::E, y: &
         UnaryFunction::Not | UnaryFunction::Sign | UnaryFunction::Floor => return None,
         UnaryFunction::Abs => {
             let zero = k.num(0.0);
+            // At 0 the slope is that of the right side.
             let below = k.rel(RelationalOp::Lt, x, zero);
             let (minus, plus) = (k.num(-1.0), k.num(1.0));
             let slope = k.if_(below, minus, plus);
@@ -102,14 +116,14 @@ pub(super) fn unary<A: ExprAlgebra>(k: &mut A, op: UnaryFunction, x: &A::E, y: &
     })
 }
 
-/// `dx / sqrt(1 - x^2)`
+/// `dx / sqrt(1 - x^2)`, the derivative of the arc sine.
 fn arc<A: ExprAlgebra>(k: &mut A, x: A::E, dx: A::E) -> A::E {
     let inside = k.one_and_square(BinaryFunction::Sub, x);
     let below = k.unary(UnaryFunction::Sqrt, inside);
     k.div(dx, below)
 }
 
-/// The derivative of `y = op(a, b)`, given those of `a` and `b`.
+/// The derivative of `y = op(a, b)`, from those of `a` and `b`. `None` if it is 0.
 pub(super) fn binary<A: ExprAlgebra>(
     k: &mut A,
     op: BinaryFunction,
@@ -144,7 +158,7 @@ pub(super) fn binary<A: ExprAlgebra>(
     }
 }
 
-/// The sum of two derivatives.
+/// The sum of two derivatives, where `None` is 0.
 pub(super) fn sum<A: ExprAlgebra>(k: &mut A, a: Option<A::E>, b: Option<A::E>) -> Option<A::E> {
     match (a, b) {
         (Some(a), Some(b)) => Some(k.add(a, b)),
@@ -152,7 +166,7 @@ pub(super) fn sum<A: ExprAlgebra>(k: &mut A, a: Option<A::E>, b: Option<A::E>) -
     }
 }
 
-/// `(da - y db) / b` for `y = a/b`.
+/// `(da - y*db) / b`, the derivative of `y = a/b`. Using `y` avoids `b^2`, which may overflow.
 fn quotient<A: ExprAlgebra>(k: &mut A, b: &A::E, y: &A::E, da: Option<A::E>, db: Option<A::E>) -> A::E {
     let carried = db.map(|db| {
         let product = k.mul(y.clone(), db);
@@ -162,7 +176,7 @@ fn quotient<A: ExprAlgebra>(k: &mut A, b: &A::E, y: &A::E, da: Option<A::E>, db:
     k.div(above, b.clone())
 }
 
-/// `b a^(b-1) da`; finite at `a = 0` for every number `b >= 1`.
+/// `b*a^(b-1)*da`, the part of a power's derivative by its base. It is finite at `a = 0` for every constant `b >= 1`.
 fn power_by_base<A: ExprAlgebra>(k: &mut A, a: &A::E, b: &A::E, da: A::E) -> A::E {
     let one = k.num(1.0);
     let less = k.sub(b.clone(), one);
@@ -171,7 +185,8 @@ fn power_by_base<A: ExprAlgebra>(k: &mut A, a: &A::E, b: &A::E, da: A::E) -> A::
     k.mul(slope, da)
 }
 
-/// `a^b log(a) db`, and 0 at `a = 0`, its limit for positive exponents.
+/// `a^b*log(a)*db`, the part of a power's derivative by its exponent.
+/// At `a = 0` it is 0, the limit for positive exponents.
 fn power_by_exponent<A: ExprAlgebra>(k: &mut A, a: &A::E, y: &A::E, db: A::E) -> A::E {
     let logarithm = k.unary(UnaryFunction::Log, a.clone());
     let slope = k.mul(y.clone(), logarithm);
@@ -181,7 +196,7 @@ fn power_by_exponent<A: ExprAlgebra>(k: &mut A, a: &A::E, y: &A::E, db: A::E) ->
     k.mul(safe, db)
 }
 
-/// `(x dy - y dx) / (x^2 + y^2)`
+/// `(x*dy - y*dx) / (x^2 + y^2)`, the derivative of `atan2(y, x)`.
 fn angle<A: ExprAlgebra>(k: &mut A, y: &A::E, x: &A::E, dy: Option<A::E>, dx: Option<A::E>) -> A::E {
     let rise = dy.map(|dy| k.mul(x.clone(), dy));
     let fall = dx.map(|dx| {
@@ -196,7 +211,7 @@ fn angle<A: ExprAlgebra>(k: &mut A, y: &A::E, x: &A::E, dy: Option<A::E>, dx: Op
     k.div(above, below)
 }
 
-/// The derivative of the side that is taken: the first when `a rel b`.
+/// The derivative of `min` or `max`: that of `a` if `a rel b`, else that of `b`.
 fn chosen<A: ExprAlgebra>(
     k: &mut A,
     rel: RelationalOp,
@@ -211,7 +226,7 @@ fn chosen<A: ExprAlgebra>(
     k.if_(first, da, db)
 }
 
-/// `if c then da else db`, when either depends.
+/// `if c then da else db`. `None` if both derivatives are 0.
 pub(super) fn branch<A: ExprAlgebra>(k: &mut A, c: A::E, da: Option<A::E>, db: Option<A::E>) -> Option<A::E> {
     if da.is_none() && db.is_none() {
         return None;

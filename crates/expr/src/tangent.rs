@@ -1,16 +1,18 @@
 //! Exact forward differentiation of functions, as a program transformation.
 //!
-//! The tangent of a function with `n` inputs takes the inputs and `n` input tangents and returns the tangents of the
-//! outputs. Every slot gets a second one that holds its tangent, and every assignment is preceded by that of the
-//! tangent. Calls become calls of the tangent of the called function, which is reserved before its body is made, so
-//! that recursive functions end. A tangent is a function like any other: its tangent gives second derivatives.
+//! The tangent function of a function with n inputs takes the inputs and n input tangents, and returns the tangents of
+//! the
+//! outputs. Every slot gets a second one for its tangent, and every assignment is preceded by one of the tangent.
+//! Calls become calls of the callee's tangent function, which is reserved before its body is built, so that recursion
+//! ends. A tangent function is a function like any other, and its own tangent gives second derivatives.
 
 use super::function::{ExternalFunctionHandle, Function, SlotExpr, SlotStatement};
 use super::rules::{self, ExprAlgebra};
 use super::{BinaryFunction, Exprs, FunctionId, RelationalOp, UnaryFunction, math};
 
 impl Exprs {
-    /// The function that takes the inputs of `f` and returns the derivatives of its outputs by one input.
+    /// The function that takes the inputs of `f` and returns the derivatives of all its outputs by one input.
+    /// It is built once for each input.
     pub fn derivative_function(&mut self, f: FunctionId, input: u32) -> FunctionId {
         if let Some(&known) = self.partials.get(&(f, input)) {
             return known;
@@ -21,6 +23,7 @@ impl Exprs {
         let outputs = u32::try_from(original.outputs.len()).expect("fewer than 2^32 outputs");
         let results: Vec<u32> = (inputs..inputs + outputs).collect();
         let values = (0..inputs).map(SlotExpr::Slot);
+        // The direction is the unit vector of the input.
         let direction = (0..inputs).map(|i| SlotExpr::Num(math::truth(i == input)));
         let partial = Function {
             name: original.name.clone(),
@@ -38,7 +41,9 @@ impl Exprs {
         id
     }
 
-    /// The function that takes the inputs of `f`, then a tangent for each, and returns the tangents of its outputs.
+    /// The tangent function of `f`: it takes the inputs, then a tangent for each, and returns the tangents of the
+    /// outputs.
+    /// It is built once.
     pub fn tangent_function(&mut self, f: FunctionId) -> FunctionId {
         if let Some(&known) = self.tangents.get(&f) {
             return known;
@@ -52,13 +57,14 @@ impl Exprs {
             outputs: original.outputs.iter().map(|&slot| layout.tangent(slot)).collect(),
             body: Vec::new(),
         });
+        // Known before its body exists: the body may call the function itself.
         self.tangents.insert(f, id);
         let body = TangentTransform { pool: self, layout }.statements(&original.body);
         self.functions[id.0 as usize].body = body;
         id
     }
 
-    /// Adds a function to the pool.
+    /// Adds a function to the pool. Equal functions are not shared.
     pub fn add_function(&mut self, function: Function) -> FunctionId {
         let id = FunctionId(u32::try_from(self.functions.len()).expect("fewer than 2^32 functions"));
         self.functions.push(function);
@@ -66,19 +72,23 @@ impl Exprs {
     }
 }
 
-/// Where the slots of a function and their tangents are in its tangent function: input values, input tangents, other
-/// values, other tangents. Arrays stay together.
+/// The slots of a tangent function: input values, input tangents, other values, other tangents.
+/// Arrays stay contiguous, as elements are addressed relative to their base.
 #[derive(Clone, Copy)]
+/// The number of inputs of the original.
 struct TangentLayout {
+    /// The number of slots of the original.
     inputs: u32,
     slots: u32,
 }
 
 impl TangentLayout {
+    /// The slot of a value.
     fn value(self, slot: u32) -> u32 {
         if slot < self.inputs { slot } else { self.inputs + slot }
     }
 
+    /// The slot of its tangent.
     fn tangent(self, slot: u32) -> u32 {
         if slot < self.inputs { self.inputs + slot } else { self.slots + slot }
     }
@@ -86,11 +96,14 @@ impl TangentLayout {
 
 /// Transforms the body of one function.
 struct TangentTransform<'a> {
+    /// The pool, to which tangent functions of callees are added.
     pool: &'a mut Exprs,
+    /// The slots of the tangent function.
     layout: TangentLayout,
 }
 
 impl TangentTransform<'_> {
+    /// The transformed statements, in order.
     fn statements(&mut self, body: &[SlotStatement]) -> Vec<SlotStatement> {
         let mut out = Vec::new();
         for stmt in body {
@@ -99,9 +112,11 @@ impl TangentTransform<'_> {
         out
     }
 
+    /// Appends the statements that compute what `stmt` does and its tangent.
     fn statement(&mut self, stmt: &SlotStatement, out: &mut Vec<SlotStatement>) {
         match stmt {
             SlotStatement::Assign(slot, value) => {
+                // The tangent comes first, since it needs the values before the assignment: `x := x*x`.
                 let change = self.tangent_or_zero(value);
                 out.push(SlotStatement::Assign(self.layout.tangent(*slot), change));
                 out.push(SlotStatement::Assign(self.layout.value(*slot), self.value(value)));
@@ -119,6 +134,7 @@ impl TangentTransform<'_> {
                 out.push(SlotStatement::If(branches, otherwise));
             }
             SlotStatement::For { slot, from, step, to, body } => {
+                // A loop variable does not depend on the inputs.
                 let mut inside = vec![SlotStatement::Assign(self.layout.tangent(*slot), SlotExpr::Num(0.0))];
                 inside.extend(self.statements(body));
                 let (from, step, to) = (self.value(from), self.value(step), self.value(to));
@@ -136,12 +152,13 @@ impl TangentTransform<'_> {
         }
     }
 
+    /// A call, preceded by one of the tangent function.
     fn call(&mut self, function: FunctionId, args: &[SlotExpr], outputs: &[Option<u32>], out: &mut Vec<SlotStatement>) {
         let tangent = self.pool.tangent_function(function);
         let changes = outputs.iter().map(|slot| slot.map(|slot| self.layout.tangent(slot))).collect();
         let values = outputs.iter().map(|slot| slot.map(|slot| self.layout.value(slot))).collect();
         let both = self.with_tangents(args);
-        // The arguments may be outputs too: tangents are written first, and values are not read after they are.
+        // Outputs may be arguments too. Tangents are stored first, so both calls read the values from before.
         out.push(SlotStatement::Call { function: tangent, args: both, outputs: changes });
         out.push(SlotStatement::Call {
             function,
@@ -150,6 +167,7 @@ impl TangentTransform<'_> {
         });
     }
 
+    /// The arguments of a tangent function: values, then tangents.
     fn with_tangents(&mut self, args: &[SlotExpr]) -> Vec<SlotExpr> {
         let mut both: Vec<SlotExpr> = args.iter().map(|arg| self.value(arg)).collect();
         for arg in args {
@@ -158,7 +176,7 @@ impl TangentTransform<'_> {
         both
     }
 
-    /// The term itself, over the new slots.
+    /// The expression itself, over the new slots.
     fn value(&self, term: &SlotExpr) -> SlotExpr {
         let layout = self.layout;
         match term {
@@ -180,15 +198,18 @@ impl TangentTransform<'_> {
         }
     }
 
+    /// An element of an array at a new base.
     fn element(&self, base: u32, len: u32, offset: &SlotExpr) -> SlotExpr {
         SlotExpr::At { base, len, offset: Box::new(self.value(offset)) }
     }
 
+    /// The tangent of an expression, as a number if it is 0.
     fn tangent_or_zero(&mut self, term: &SlotExpr) -> SlotExpr {
         self.tangent(term).unwrap_or(SlotExpr::Num(0.0))
     }
 
-    /// The tangent of a term; `None` when it is always 0.
+    /// The tangent of an expression. `None` if it is always 0.
+    // An index does not depend on the inputs in a differentiable way.
     fn tangent(&mut self, term: &SlotExpr) -> Option<SlotExpr> {
         match term {
             SlotExpr::Num(_) | SlotExpr::Rel(..) => None,
@@ -228,7 +249,7 @@ impl TangentTransform<'_> {
     }
 }
 
-/// Builds terms, dropping neutral elements as the pool of expressions does.
+/// Builds expressions over slots, and drops neutral elements as the pool does.
 struct SlotExprBuilder;
 
 impl ExprAlgebra for SlotExprBuilder {

@@ -1,27 +1,27 @@
-//! What scalar variables are: their types, when they change, how gladly they are states; and pieces of texts with values in
-//! them. Instances and the flat model speak of both.
+//! Attributes of scalar variables that the instance and the flat model share: type, variability, `stateSelect`.
+//! Also pieces of messages with values in them, as `assert` has.
 
 use crate::ExprId;
 
-/// The type of a scalar variable.
+/// The type of a scalar variable. All values are stored as `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ScalarType {
-    /// Real
+    /// Real.
     Real,
-    /// Integer
+    /// Integer.
     Integer,
-    /// Boolean
+    /// Boolean, with the values 0 and 1.
     Boolean,
-    /// An enumeration: index into `FlatModel::enumerations`. Values count from 1.
+    /// An enumeration, by its index in `FlatModel::enumerations`. Its literals count from 1.
     Enumeration(u32),
 }
 
-/// When a variable may change.
+/// When a variable may change, in ascending order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Variability {
-    /// Never; its value was used to build the model (constants, structural parameters).
+    /// Never. Its value was used to build the model: a constant, or a parameter that determines the structure.
     Constant,
-    /// Not during a run; may be set before one.
+    /// Not during a run. It may be set before one.
     Parameter,
     /// At events only.
     Discrete,
@@ -29,7 +29,7 @@ pub enum Variability {
     Continuous,
 }
 
-/// `stateSelect`
+/// The attribute `stateSelect` of Modelica, from the least to the most preferred as a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default)]
 #[allow(missing_docs, reason = "the Modelica literals")]
 pub enum StateSelect {
@@ -41,11 +41,11 @@ pub enum StateSelect {
     Always,
 }
 
-/// A piece of a text with values in it.
+/// A piece of a message with values in it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum MessagePart {
-    /// Words.
+    /// A fixed text.
     Text(String),
-    /// A value and how it is printed.
+    /// A value, and the type by which it is printed.
     Value(ExprId, ScalarType),
 }

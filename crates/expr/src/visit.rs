@@ -1,27 +1,30 @@
-//! Walking over expressions: what they depend on, replacing leaves, affine parts.
+//! Walks over expressions: operands, reachable nodes, dependencies, substitution.
 //!
-//! Nothing here recurses, so a sum of a million terms is no danger; arguments have smaller ids than their node, so the
-//! reachable nodes in the order of their ids are in an order of evaluation.
+//! Nothing here recurses, so that a sum of a million terms needs no deep stack. Operands have smaller ids than their
+//! node, so the reachable nodes in ascending order are in an order of evaluation.
 
 use super::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
-/// The arguments of one node.
+/// The operands of one node. Up to three are stored here, those of a call are borrowed from the pool.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeOperands<'a> {
+    /// The operands of nodes that are no calls.
     few: [ExprId; 3],
+    /// How many of `few` are used.
     len: usize,
+    /// The arguments of a call, else empty.
     many: &'a [ExprId],
 }
 
 impl NodeOperands<'_> {
-    /// The arguments in order.
+    /// The operands in order.
     pub fn as_slice(&self) -> &[ExprId] {
         if self.many.is_empty() { &self.few[..self.len] } else { self.many }
     }
 }
 
-/// The leaves of some expressions, each list sorted and without repetition.
+/// The leaves of some expressions. Each list is sorted and has no duplicates.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct LeafDependencies {
     /// Variables whose value occurs.
@@ -30,22 +33,26 @@ pub struct LeafDependencies {
     pub ders: Vec<VarId>,
     /// Variables whose value before the event occurs.
     pub pres: Vec<VarId>,
-    /// Time occurs.
+    /// True if time occurs.
     pub time: bool,
 }
 
-/// A reusable record of visited nodes, for many walks over one pool.
+/// A record of visited nodes that can be reused for many walks over one pool.
 #[derive(Clone, Debug, Default)]
 pub struct NodeTraversal {
+    /// For each node the stamp of the walk that visited it last.
     marks: Vec<u32>,
+    /// The stamp of the current walk, so that marks need not be cleared between walks.
     stamp: u32,
+    /// Nodes still to be visited.
     stack: Vec<ExprId>,
 }
 
 impl NodeTraversal {
-    /// Calls `visit` once for every node reachable from `roots`, parents before children. When `visit` says false, the
-    /// arguments of that node are not followed.
+    /// Calls `visit` once for every node reachable from `roots`, a node before its operands.
+    /// If `visit` returns false, the operands of that node are not followed.
     pub fn each(&mut self, pool: &Exprs, roots: &[ExprId], mut visit: impl FnMut(ExprId, ExprNode) -> bool) {
+        // The stamps start again: marks of old walks would otherwise look current.
         if self.stamp == u32::MAX {
             self.marks.clear();
             self.stamp = 0;
@@ -53,6 +60,7 @@ impl NodeTraversal {
         self.stamp += 1;
         self.marks.resize(pool.len().max(self.marks.len()), 0);
         self.stack.clear();
+        // Reversed, because the stack is read from its end and the roots are to be visited in order.
         self.stack.extend(roots.iter().rev());
         while let Some(e) = self.stack.pop() {
             if std::mem::replace(&mut self.marks[e.index()], self.stamp) == self.stamp {
@@ -66,7 +74,7 @@ impl NodeTraversal {
 }
 
 impl Exprs {
-    /// The arguments of a node; none for leaves.
+    /// The operands of a node. Leaves have none.
     pub fn operands(&self, e: ExprId) -> NodeOperands<'_> {
         let none = Self::ZERO;
         let (few, len) = match self.node(e) {
@@ -90,7 +98,7 @@ impl Exprs {
         NodeOperands { few, len, many: &[] }
     }
 
-    /// The same node with other arguments, simplified.
+    /// The same node with its operands replaced by `change`, simplified. Leaves stay as they are.
     pub fn with_operands(&mut self, e: ExprId, mut change: impl FnMut(ExprId) -> ExprId) -> ExprId {
         match self.node(e) {
             ExprNode::Unary(op, a) => self.unary(op, change(a)),
@@ -103,6 +111,7 @@ impl Exprs {
             ExprNode::Homotopy(a, b) => self.homotopy(change(a), change(b)),
             ExprNode::If(c, a, b) => self.if_(change(c), change(a), change(b)),
             ExprNode::Call(function, output, args) => {
+                // The arguments are copied, because building a node may move the list that holds them.
                 let args: Vec<ExprId> = self.args(args).to_vec().into_iter().map(change).collect();
                 self.call(function, output, &args)
             }
@@ -110,10 +119,10 @@ impl Exprs {
         }
     }
 
-    /// All nodes reachable from `roots` for which `enter` says true, in an order of evaluation (arguments first).
+    /// All nodes reachable from `roots` for which `enter` returns true, in an order of evaluation (operands first).
     /// A node that is not entered is left out, and so is what only it leads to.
     pub fn reachable(&self, roots: &[ExprId], mut enter: impl FnMut(ExprId) -> bool) -> Vec<ExprId> {
-        // most expressions are small: one allocation is enough for them
+        // Most expressions are small, and one allocation is enough for them.
         let mut seen = FxHashSet::with_capacity_and_hasher(28, FxBuildHasher);
         let mut stack = Vec::with_capacity(28);
         stack.extend_from_slice(roots);
@@ -128,12 +137,12 @@ impl Exprs {
         found
     }
 
-    /// How many different nodes an expression has.
+    /// The number of distinct nodes of an expression.
     pub fn node_count(&self, e: ExprId) -> usize {
         self.reachable(&[e], |_| true).len()
     }
 
-    /// Everything that the expressions depend on.
+    /// All leaves that the expressions depend on.
     pub fn dependencies(&self, roots: &[ExprId]) -> LeafDependencies {
         let mut found = LeafDependencies::default();
         for e in self.reachable(roots, |_| true) {
@@ -145,6 +154,7 @@ impl Exprs {
                 _ => {}
             }
         }
+        // Nodes are in the order of their ids, which is not the order of the variables.
         found.vars.sort_unstable();
         found.ders.sort_unstable();
         found.pres.sort_unstable();
@@ -161,38 +171,40 @@ impl Exprs {
         self.dependencies(&[e]).ders
     }
 
-    /// Whether `part` occurs in `e` (or is `e`).
+    /// True if `part` occurs in `e`, or is `e`.
     pub fn contains(&self, e: ExprId, part: ExprId) -> bool {
         let mut found = false;
         self.reachable(&[e], |node| {
             found |= node == part;
-            // Arguments have smaller ids, so below a smaller id there is nothing to find.
+            // Operands have smaller ids, so a node with a smaller id than `part` cannot contain it.
             !found && node > part
         });
         found
     }
 
-    /// `e` with parts replaced; see [`Substitution`].
+    /// The expression `e` with parts replaced, see [`Substitution`].
     pub fn substitute(&mut self, e: ExprId, replacements: &[(ExprId, ExprId)]) -> ExprId {
         Substitution::new(replacements.iter().copied()).apply(self, e)
     }
 }
 
-/// Replaces parts of expressions by others. What is put in is not searched again. One value serves any number of
-/// expressions of one pool and remembers what it has done.
+/// Replaces parts of expressions by others. Replacements are not searched for further parts.
+/// One value serves any number of expressions of one pool, and remembers what it has replaced.
 #[derive(Clone, Debug, Default)]
 pub struct Substitution {
+    /// The replacement of each node seen so far.
     memo: FxHashMap<ExprId, ExprId>,
 }
 
 impl Substitution {
-    /// Replaces each first by its second.
+    /// Replaces the first of each pair by the second.
     pub fn new(replacements: impl IntoIterator<Item = (ExprId, ExprId)>) -> Self {
         Substitution { memo: replacements.into_iter().collect() }
     }
 
-    /// The expression with everything replaced.
+    /// The expression with all replacements made.
     pub fn apply(&mut self, pool: &mut Exprs, e: ExprId) -> ExprId {
+        // Operands come first, so their replacements are known when their node is rebuilt.
         for node in pool.reachable(&[e], |node| !self.memo.contains_key(&node)) {
             let changed = pool.with_operands(node, |operand| self.memo[&operand]);
             self.memo.insert(node, changed);

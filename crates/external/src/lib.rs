@@ -1,6 +1,9 @@
-//! Functions of others' C code that are carried out in Rust: what stands behind `external "C"` of the Modelica Standard
-//! Library's tables, texts and random numbers, and behind units of other tools (`mockup`). [`builtin`] has them by the names
-//! of the C functions.
+//! Functions of foreign C code, carried out in Rust.
+//! Names of C functions enter; functions that equations can call leave ([`builtin`]). The crate `model` asks for them
+//! where a Modelica function is declared `external "C"`.
+//!
+//! They cover tables, texts, random numbers, FFT and LAPACK of the Modelica Standard Library, units of other tools
+//! (`mockup`) and C code of a user (`c`). A function is pure: equal arguments give equal results.
 
 #[cfg(feature = "fmi")]
 pub mod c;
@@ -23,38 +26,38 @@ use std::sync::Arc;
 use surface::TableSurface;
 use time_table::TimeTable;
 
-/// A value given to such a function, or by it.
+/// A value passed to such a function, or given by it.
 #[derive(Clone, Debug)]
 pub enum ExternalValue {
-    /// A text.
+    /// A text, always known before the run.
     Text(String),
-    /// A number, truth value or literal, or an array of these, row by row; `None` for what is not known before the run.
+    /// A number, Boolean value or enumeration literal, or an array of these row by row. Booleans are 0 and 1.
     Numbers {
-        /// Sizes; none for a single one.
+        /// The size of each dimension. Empty for a scalar.
         dims: Vec<usize>,
-        /// The values.
+        /// The elements. `None` for one that is not known before the run.
         values: Vec<Option<f64>>,
     },
-    /// An external object.
+    /// An external object (Modelica 3.6, section 12.9.7).
     Object(ExternalObject),
 }
 
-/// What an external object holds.
+/// The content of an external object, which its constructor made.
 #[derive(Clone, Debug)]
 pub enum ExternalObject {
-    /// Columns over one argument.
+    /// `CombiTable1D`: one curve for each chosen column, over one argument.
     Curves(Arc<Vec<TableCurve>>),
-    /// Columns over time.
+    /// `CombiTimeTable`: columns over time.
     Times(Arc<TimeTable>),
-    /// A map.
+    /// `CombiTable2D`: a surface over two arguments.
     Surface(Arc<TableSurface>),
-    /// A unit of another tool.
+    /// A unit of another tool, with its instances.
     #[cfg(feature = "fmi")]
     MockUp(Arc<mockup::InstancePool>),
 }
 
 impl ExternalObject {
-    /// Where it lies: the same for the same object.
+    /// The address of the content. It is the same for copies of one object, by which equal calls are recognised.
     pub fn address(&self) -> usize {
         match self {
             ExternalObject::Curves(table) => Arc::as_ptr(table).addr(),
@@ -69,23 +72,25 @@ impl ExternalObject {
 /// How a C function is carried out.
 #[derive(Clone, Copy)]
 pub enum BuiltinImplementation {
-    /// It makes an object of what is known before the run. The first arguments are the names of a file and of a table in
-    /// it, and the table where there is no file.
+    /// The constructor of an object, from values known before the run. The first arguments are the name of a file, the
+    /// name
+    /// of a table in it, and the table itself if there is no file. The error ends a sentence about the table.
     Object(fn(&[ExternalValue]) -> Result<ExternalObject, String>),
-    /// A function of all numbers that are not part of an object, in order; results and output arguments are its outputs.
+    /// A function of all numbers that are not part of an object, in order.
+    /// Its outputs are the return value, then the output arguments.
     Function(fn(&[ExternalValue]) -> Option<Arc<dyn ExternalFunction>>),
-    /// It makes values of known values: the result, then the output arguments.
+    /// An evaluation at compile time: the return value, then the output arguments. `None` if an argument is not known.
     Values(fn(&[ExternalValue]) -> Option<Vec<ExternalValue>>),
-    /// It makes an object of a unit of another tool: its file, kind and texts.
+    /// The constructor of a unit of another tool, from its file, kind and texts.
     MockUp,
-    /// It does something that no model can see.
+    /// A function without an effect that a model could see, such as printing.
     Nothing,
 }
 
-/// The name of a file, or of a table, where there is none.
+/// The name by which the Modelica Standard Library says that there is no file or table.
 pub const NO_NAME: &str = "NoName";
 
-/// A C function by its name.
+/// The implementation of a C function by its name. `None` if it is not one of those in Rust.
 pub fn builtin(name: &str) -> Option<BuiltinImplementation> {
     use BuiltinImplementation::{Function, MockUp, Nothing, Object, Values};
     Some(match name {
@@ -150,16 +155,17 @@ pub fn builtin(name: &str) -> Option<BuiltinImplementation> {
     })
 }
 
-/// A single known number.
+/// A single known number as result.
 fn one(x: f64) -> Option<Vec<ExternalValue>> {
     Some(vec![ExternalValue::Numbers { dims: Vec::new(), values: vec![Some(x)] }])
 }
 
-/// A row of known numbers.
+/// A list of known numbers as result.
 fn row(x: &[f64]) -> Option<Vec<ExternalValue>> {
     Some(vec![ExternalValue::Numbers { dims: vec![x.len()], values: x.iter().copied().map(Some).collect() }])
 }
 
+/// Argument `k`, if it is a text.
 fn text(given: &[ExternalValue], k: usize) -> Option<&str> {
     match given.get(k)? {
         ExternalValue::Text(text) => Some(text),
@@ -167,6 +173,7 @@ fn text(given: &[ExternalValue], k: usize) -> Option<&str> {
     }
 }
 
+/// Argument `k`, if it is a known number. Of an array the first element.
 fn number(given: &[ExternalValue], k: usize) -> Option<f64> {
     match given.get(k)? {
         ExternalValue::Numbers { values, .. } => *values.first()?,
@@ -174,16 +181,20 @@ fn number(given: &[ExternalValue], k: usize) -> Option<f64> {
     }
 }
 
+/// The results of a scanning function for texts: the position behind the token, and the token or an empty text.
+/// The arguments are the text and the position at which to begin.
 fn scanned(given: &[ExternalValue], token: impl Fn(&str) -> Option<(usize, String)>) -> Option<Vec<ExternalValue>> {
     let (next, found) = strings::scan(text(given, 0)?, number(given, 1)?, token);
     Some(vec![one(next)?.remove(0), ExternalValue::Text(found.unwrap_or_default())])
 }
 
+/// The same for numbers: the position behind the token, and its value or 0.
 fn scanned_number(given: &[ExternalValue], token: impl Fn(&str) -> Option<(usize, f64)>) -> Option<Vec<ExternalValue>> {
     let (next, found) = strings::scan(text(given, 0)?, number(given, 1)?, token);
     Some(vec![one(next)?.remove(0), one(found.unwrap_or(0.0))?.remove(0)])
 }
 
+/// The curves of the object in the first argument.
 fn curves_of(given: &[ExternalValue]) -> Option<Arc<Vec<TableCurve>>> {
     match given.first()? {
         ExternalValue::Object(ExternalObject::Curves(table)) => Some(table.clone()),
@@ -191,6 +202,7 @@ fn curves_of(given: &[ExternalValue]) -> Option<Arc<Vec<TableCurve>>> {
     }
 }
 
+/// The time table of the object in the first argument.
 fn times_of(given: &[ExternalValue]) -> Option<Arc<TimeTable>> {
     match given.first()? {
         ExternalValue::Object(ExternalObject::Times(table)) => Some(table.clone()),
@@ -198,6 +210,7 @@ fn times_of(given: &[ExternalValue]) -> Option<Arc<TimeTable>> {
     }
 }
 
+/// The surface of the object in the first argument.
 fn map_of(given: &[ExternalValue]) -> Option<Arc<TableSurface>> {
     match given.first()? {
         ExternalValue::Object(ExternalObject::Surface(table)) => Some(table.clone()),
@@ -205,6 +218,7 @@ fn map_of(given: &[ExternalValue]) -> Option<Arc<TableSurface>> {
     }
 }
 
+/// A function of the unit in the first argument.
 #[cfg(feature = "fmi")]
 fn of_mockup(given: &[ExternalValue], task: mockup::FmuOperation) -> Option<Arc<dyn ExternalFunction>> {
     match given.first()? {
@@ -215,10 +229,14 @@ fn of_mockup(given: &[ExternalValue], task: mockup::FmuOperation) -> Option<Arc<
     }
 }
 
-/// A table as it was given: columns that all have as many numbers.
+/// A table that was passed as a matrix, by columns of equal length.
 struct TableColumns(Vec<Vec<f64>>);
 
 impl TableColumns {
+    /// The table in the third argument.
+    ///
+    /// # Errors
+    /// There is no matrix with at least one row and two columns, or its elements are not known before the run.
     fn of(given: &[ExternalValue]) -> Result<Self, String> {
         let Some(ExternalValue::Numbers { dims, values }) = given.get(2) else { return Err("it has no table".into()) };
         let &[rows, columns] = dims.as_slice() else { return Err("its table is no matrix".into()) };
@@ -232,10 +250,14 @@ impl TableColumns {
         Ok(TableColumns((0..columns).map(|j| (0..rows).map(|i| known[i * columns + j]).collect()).collect()))
     }
 
-    /// The columns that were asked for, by their numbers from 1.
+    /// The columns whose numbers, counted from 1, are in argument `k`.
+    ///
+    /// # Errors
+    /// A number is not known, or there is no such column.
     fn chosen(&self, given: &[ExternalValue], k: usize) -> Result<Vec<Vec<f64>>, String> {
         let Some(ExternalValue::Numbers { values, .. }) = given.get(k) else { return Err("it says no columns".into()) };
         let chosen = values.iter().map(|x| {
+            // Number 0 wraps to an index that no table has.
             let at = x.ok_or("its columns are not known before the run")? as usize;
             let column = self.0.get(at.wrapping_sub(1));
             column.cloned().ok_or(format!("its table has {} columns and no column {at}", self.0.len()))
@@ -244,6 +266,7 @@ impl TableColumns {
     }
 }
 
+/// Checks that abscissae do not decrease, or with `strictly` that they increase.
 fn grows(x: &[f64], strictly: bool) -> Result<(), String> {
     let wrong = |w: &[f64]| w[1] < w[0] || strictly && w[1] == w[0];
     match x.windows(2).find(|w| wrong(w)) {
@@ -252,19 +275,24 @@ fn grows(x: &[f64], strictly: bool) -> Result<(), String> {
     }
 }
 
+/// Argument `k` read by `of`; `what` names it in the error.
 fn option<T>(given: &[ExternalValue], k: usize, of: fn(f64) -> Option<T>, what: &str) -> Result<T, String> {
     number(given, k).and_then(of).ok_or(format!("its {what} is not known"))
 }
 
+/// The constructor of `CombiTable1D`. Arguments: file, table name, table, then options by the numbers used here.
 fn curves(given: &[ExternalValue]) -> Result<ExternalObject, String> {
     let columns = TableColumns::of(given)?;
     let smoothness = option(given, 7, Smoothness::from_number, "smoothness")?;
+    // The older function `init2` has no argument for extrapolation.
     let extrapolation = option(given, 8, Extrapolation::from_number, "extrapolation").unwrap_or(Extrapolation::Slope);
+    // Jumps are not allowed here: without events their side would be undefined.
     grows(&columns.0[0], true)?;
     let curve = |y: &Vec<f64>| TableCurve::new(&columns.0[0], y, smoothness, extrapolation);
     Ok(ExternalObject::Curves(Arc::new(columns.chosen(given, 5)?.iter().map(curve).collect())))
 }
 
+/// The constructor of `CombiTimeTable`.
 fn times(given: &[ExternalValue]) -> Result<ExternalObject, String> {
     let columns = TableColumns::of(given)?;
     let options = (
@@ -273,6 +301,7 @@ fn times(given: &[ExternalValue]) -> Result<ExternalObject, String> {
         option(given, 11, TimeEvents::from_number, "kind of time events").unwrap_or(TimeEvents::Always),
     );
     let (start, shift) = (option(given, 5, Some, "start time")?, option(given, 10, Some, "shift of time")?);
+    // Two rows with equal times are a jump.
     grows(&columns.0[0], false)?;
     Ok(ExternalObject::Times(Arc::new(TimeTable::new(
         &columns.0[0],
@@ -282,6 +311,7 @@ fn times(given: &[ExternalValue]) -> Result<ExternalObject, String> {
     ))))
 }
 
+/// The constructor of `CombiTable2D`: the first column and the first row of the table are the axes.
 fn map(given: &[ExternalValue]) -> Result<ExternalObject, String> {
     let columns = TableColumns::of(given)?;
     if columns.0[0].len() < 2 {
@@ -297,10 +327,12 @@ fn map(given: &[ExternalValue]) -> Result<ExternalObject, String> {
     Ok(ExternalObject::Surface(Arc::new(TableSurface::new([first, second], &values, smoothness, extrapolation))))
 }
 
-/// A column by its number, over an argument.
+/// `CombiTable1D_getValue`: arguments are the number of a column from 1, and the abscissa.
 #[derive(Debug)]
 struct CurveLookup {
+    /// The curves, one for each column.
     table: Arc<Vec<TableCurve>>,
+    /// The order of the derivative by the abscissa.
     order: usize,
 }
 
@@ -317,10 +349,13 @@ impl ExternalFunction for CurveLookup {
     }
 }
 
-/// A column by its number, over time, the next event and what that was before.
+/// `CombiTimeTable_getValue`: arguments are the number of a column from 1, time, the next event, and that before the
+/// event.
 #[derive(Debug)]
 struct TimeTableLookup {
+    /// The columns.
     table: Arc<TimeTable>,
+    /// The order of the derivative by time.
     order: usize,
 }
 
@@ -340,7 +375,7 @@ impl ExternalFunction for TimeTableLookup {
     }
 }
 
-/// The next event of a table, over time.
+/// `CombiTimeTable_nextTimeEvent`: the argument is time (s).
 #[derive(Debug)]
 struct NextTableEvent(Arc<TimeTable>);
 
@@ -349,15 +384,18 @@ impl ExternalFunction for NextTableEvent {
         self.0.next_event(args[0])
     }
 
+    // The event time is constant between events.
     fn partial(&self, _: usize) -> Option<Arc<dyn ExternalFunction>> {
         None
     }
 }
 
-/// A map over two arguments.
+/// `CombiTable2D_getValue`: the arguments are the abscissae of both axes.
 #[derive(Debug)]
 struct SurfaceLookup {
+    /// The surface.
     table: Arc<TableSurface>,
+    /// The orders of the derivative by each argument.
     orders: [usize; 2],
 }
 

@@ -1,25 +1,33 @@
-//! Tables over time, as `ModelicaStandardTables` has them: curves that begin at a time, are shifted in time, and have events
-//! at their corners.
+//! Tables over time, as `CombiTimeTable` of the Modelica Standard Library has them (C source `ModelicaStandardTables`).
+//! A table has a start time, a shift in time, and time events at its corners and jumps.
+//! The parent module makes them and wraps their values and event times as functions for equations.
+//!
+//! A value depends on whether the event at a jump has happened yet. Functions have no memory, so the equations pass the
+//! time of the next event and its value before the event.
 
 use super::curve::TableCurve;
 use super::options::{Extrapolation, Smoothness, TimeEvents};
 
-/// Curves over time.
+/// Columns over time, with the events that belong to them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TimeTable {
-    /// One a column.
+    /// One curve for each column that was chosen.
     pub curves: Vec<TableCurve>,
-    /// Before this time the value is 0, s.
+    /// Before this time all values are 0 (s).
     pub start: f64,
-    /// Added to the times of the table, s.
+    /// Added to the times of the table (s).
     pub shift: f64,
-    /// Times of the table at which something is said to happen, growing, and the period after which they come again.
+    /// Times of the table at which an event takes place, ascending, without `shift` (s).
     corners: Vec<f64>,
+    /// The period after which the events repeat. `None` unless the table is extrapolated periodically (s).
     period: Option<f64>,
 }
 
 impl TimeTable {
-    /// `times` do not decrease.
+    /// Builds a table.
+    /// `times` do not decrease, and two equal ones are a jump; there is at least one. Each column has one value for
+    /// each time.
+    /// The pair at the end is the start time and the shift (s).
     pub fn new(
         times: &[f64],
         columns: &[Vec<f64>],
@@ -27,11 +35,13 @@ impl TimeTable {
         (start, shift): (f64, f64),
     ) -> Self {
         let curves = columns.iter().map(|y| TableCurve::new(times, y, smoothness, extrapolation)).collect();
+        // Cubic curves have continuous slopes, so that only their ends and jumps need events.
         let bent = matches!(smoothness, Smoothness::Linear | Smoothness::Constant);
         let last = times.len() - 1;
         let happens = |k: usize| match events {
             TimeEvents::Never => false,
             TimeEvents::Always if bent => true,
+            // `k == 0` and `k == last` are tested first, which keeps the neighbours in range.
             _ => k == 0 || k == last || times[k] == times[k - 1] || times[k] == times[k + 1],
         };
         let mut corners: Vec<f64> = (0..times.len()).filter(|&k| happens(k)).map(|k| times[k]).collect();
@@ -41,8 +51,10 @@ impl TimeTable {
         TimeTable { curves, start, shift, corners, period }
     }
 
-    /// The value, or a derivative of this order, where the next event is known: at its time the event has not happened yet
-    /// while the value before the event says the same.
+    /// The value of a column, or its derivative of this order.
+    ///
+    /// The three times are the current one, the next event, and the next event before the current event iteration (s).
+    /// If the last two agree, the event at that time has not happened yet: the curve left of the jump still holds.
     pub fn value(&self, column: usize, [time, next, before]: [f64; 3], order: usize) -> f64 {
         let left = next < f64::MAX && next == before && time >= next;
         if time < self.start || left && next <= self.start {
@@ -52,7 +64,9 @@ impl TimeTable {
         if !left {
             return curve.value(time - self.shift, order, false);
         }
-        // the piece that ends at the event goes on a little
+        // The solver may step a little beyond the event before it locates it. Continuing the left piece with its slope
+        // keeps the
+        // function smooth there.
         let edge = curve.value(next - self.shift, 0, true);
         let slope = curve.value(next - self.shift, 1, true);
         match order {
@@ -61,13 +75,15 @@ impl TimeTable {
         }
     }
 
-    /// The next event after a time; the largest number where there is none.
+    /// The time of the next event after `time`. `f64::MAX` if there is none (s).
     pub fn next_event(&self, time: f64) -> f64 {
         if time < self.start {
+            // The step from 0 to the first value at the start is an event too.
             return self.start;
         }
         let Some(first) = self.corners.first() else { return f64::MAX };
         let from = |turn: f64| self.corners.iter().map(move |c| c + turn * self.period.unwrap_or(0.0) + self.shift);
+        // The next event lies in the current period or in the one after it.
         let turn = self.period.map_or(0.0, |period| ((time - self.shift - first) / period).floor());
         from(turn).chain(from(turn + 1.0)).find(|t| *t > time).unwrap_or(f64::MAX)
     }

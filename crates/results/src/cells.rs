@@ -1,28 +1,33 @@
-//! A CSV text cut into cells that know their place, so that messages can point at them.
+//! Splits a CSV text into cells that know their position, so that messages can point at them.
+//! `recording` and `table` read files by it. The delimiter is recognised.
 
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// One cell.
+/// One cell of a row.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct TextCell<'a> {
-    /// Its text, without surrounding blanks and quotes.
+    /// Its text, without surrounding blanks and quotes. Owned only if quotes inside had to be replaced.
     pub text: Cow<'a, str>,
-    /// Its bytes in the file.
+    /// The bytes of the cell in the file.
     pub place: Range<usize>,
 }
 
-/// Walks over the rows that carry data: empty lines and lines that begin with `#` are skipped.
+/// Reads a text row by row. Empty lines and lines that begin with `#` are skipped.
 #[derive(Clone, Debug)]
 pub(super) struct CellRows<'a> {
+    /// The complete text.
     text: &'a str,
+    /// The byte to be read next.
     at: usize,
+    /// The byte between cells.
     delimiter: u8,
 }
 
 impl<'a> CellRows<'a> {
-    /// Finds the delimiter in the first row: a tab, else a semicolon, else a comma.
+    /// Starts at the first row, which decides about the delimiter: a tab if it has one, else a semicolon, else a comma.
     pub fn new(text: &'a str) -> Self {
+        // A byte order mark is not part of the first name.
         let at = if text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
         let mut rows = CellRows { text, at, delimiter: b',' };
         rows.skip_remarks();
@@ -32,13 +37,15 @@ impl<'a> CellRows<'a> {
         rows
     }
 
-    /// Decimal commas are possible where commas do not part cells.
+    /// True if numbers may have a decimal comma, because commas do not separate cells.
     pub fn decimal_comma(&self) -> bool {
         self.delimiter != b','
     }
 
+    /// Moves to the first line that is neither empty nor a remark.
     fn skip_remarks(&mut self) {
         while let Some(line) = self.text[self.at..].split_inclusive('\n').next() {
+            // A line of delimiters only is what spreadsheets write for an empty row.
             let empty = line.trim_matches([' ', '\t', '\r', '\n', ';', ',']).is_empty();
             if !empty && !line.trim_start().starts_with('#') {
                 return;
@@ -47,7 +54,7 @@ impl<'a> CellRows<'a> {
         }
     }
 
-    /// Cuts the next row into `cells`; false at the end of the text.
+    /// Splits the next row into `cells`, which are replaced. False at the end of the text.
     pub fn next_row(&mut self, cells: &mut Vec<TextCell<'a>>) -> bool {
         cells.clear();
         self.skip_remarks();
@@ -73,7 +80,7 @@ impl<'a> CellRows<'a> {
         }
     }
 
-    /// The cell at the current place and where it ends.
+    /// The cell at the current position, and the position of the delimiter or line end after it.
     fn cell(&self) -> (TextCell<'a>, usize) {
         let bytes = self.text.as_bytes();
         let blanks = bytes[self.at..].iter().take_while(|&&b| b == b' ').count();
@@ -87,12 +94,14 @@ impl<'a> CellRows<'a> {
         (TextCell { text: Cow::Borrowed(text), place: start..start + text.len() }, end)
     }
 
+    /// The position of the next delimiter or line end.
     fn end_of_plain(&self, from: usize) -> usize {
         let stop = |&b: &u8| b == self.delimiter || b == b'\n' || b == b'\r';
         self.text.as_bytes()[from..].iter().position(stop).map_or(self.text.len(), |i| from + i)
     }
 
-    /// A cell in quotes; doubled quotes inside stand for one. A quote that is never closed ends with the text.
+    /// A cell in quotes, whose opening mark is at `open`. Doubled quotes inside stand for one.
+    /// A quote that is never closed extends to the end of the text.
     fn quoted(&self, open: usize) -> (TextCell<'a>, usize) {
         let bytes = self.text.as_bytes();
         let mut at = open + 1;
@@ -106,11 +115,12 @@ impl<'a> CellRows<'a> {
         let inner = &self.text[open + 1..close];
         let text = if inner.contains('"') { Cow::Owned(inner.replace("\"\"", "\"")) } else { Cow::Borrowed(inner) };
         let after = (close + 1).min(self.text.len());
+        // Text between the closing quote and the delimiter is dropped.
         (TextCell { text, place: open..after }, self.end_of_plain(after))
     }
 }
 
-/// The line without what stands in quotes.
+/// A line without its quoted parts.
 fn unquoted(line: &str) -> String {
     line.split('"').step_by(2).collect()
 }

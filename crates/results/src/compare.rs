@@ -1,4 +1,5 @@
-//! Two trajectories side by side, signal by signal.
+//! Compares two trajectories signal by signal: errors, delay, and whether the result stays in a tolerance tube.
+//! Reference and result enter, a [`TrajectoryComparison`] leaves. The command `compare` and tests call [`compare`].
 
 use serde::Serialize;
 
@@ -6,81 +7,86 @@ use super::delay::delay;
 use super::trajectory::{Kind, Trajectory};
 use super::tube::{ToleranceTube, interpolate};
 
-/// How far a result may lie from the reference: the half widths of the tube around the reference.
+/// The tolerance of a comparison: the half height and half width of the tube around the reference.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TubeTolerance {
-    /// Part of the signal's range (largest minus least value of the reference; of its size where it is constant).
+    /// Fraction of the signal's range, the difference of its largest and smallest value. For a constant, of its size.
     pub relative: f64,
-    /// In the signal's unit; added to the relative part.
+    /// Added to the relative part, in the unit of the signal.
     pub absolute: f64,
-    /// Seconds; `None` for `relative` times the reference's duration.
+    /// Half width (s). `None` for `relative` times the duration of the reference.
     pub time: Option<f64>,
 }
 
 impl Default for TubeTolerance {
-    /// The width `csv-compare` takes: 0.2 % of the range in both directions.
+    /// The tolerance of `csv-compare`: 0.2 % of the range, in both directions.
     fn default() -> Self {
         TubeTolerance { relative: 0.002, absolute: 0.0, time: None }
     }
 }
 
-/// What came out for all signals.
+/// The result of a comparison.
 #[derive(Clone, Debug, Serialize)]
 pub struct TrajectoryComparison {
-    /// True when no signal left its tube.
+    /// True if no signal left its tube and none failed for another reason.
     pub within: bool,
-    /// One entry a pair of signals, in the order asked for.
+    /// One entry for each pair of signals, in the order requested.
     pub signals: Vec<SignalComparison>,
 }
 
-/// What came out for one signal. Numbers are in the reference's unit.
+/// The result for one signal. Values are in the unit of the reference.
 #[derive(Clone, Debug, Serialize)]
 pub struct SignalComparison {
-    /// The name in the reference.
+    /// The name of the signal in the reference.
     pub name: String,
-    /// The name in the result, where it differs.
+    /// The name in the result. `None` if it is the same.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub other: Option<String>,
-    /// The unit of the reference; empty where unknown.
+    /// The unit of the reference. Empty if it is not known.
     pub unit: String,
-    /// Root mean square of the difference over the reference's rows; `None` where nothing could be compared.
+    /// The root mean square of the difference at the rows of the reference. `None` if nothing could be compared.
     pub rmse: Option<f64>,
-    /// `rmse` over the root mean square of the reference; `None` where that is zero.
+    /// `rmse` divided by the root mean square of the reference. `None` if that is zero.
     pub normalised: Option<f64>,
-    /// The largest difference.
+    /// The largest absolute difference. `None` if nothing could be compared.
     pub maximum: Option<f64>,
-    /// The time of the largest difference in seconds.
+    /// The time of the largest difference (s).
     pub maximum_at: Option<f64>,
-    /// Seconds by which the result comes later, where both correlate best; `None` for constant and discrete signals.
+    /// The shift by which the result comes later, where both correlate best (s). `None` for constant and discrete
+    /// signals.
     pub delay: Option<f64>,
     /// The correlation at that delay.
     pub correlation: Option<f64>,
-    /// Half height of the tube.
+    /// The half height of the tube.
     pub tolerance: f64,
-    /// Half width of the tube in seconds.
+    /// The half width of the tube (s).
     pub time_tolerance: f64,
-    /// Points outside the tube.
+    /// The number of points outside the tube.
     pub violations: usize,
-    /// Points looked at.
+    /// The number of points that were checked.
     pub points: usize,
-    /// The time of the first point outside, in seconds.
+    /// The time of the first point outside (s). `None` if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub first_violation: Option<f64>,
-    /// Why the signal fails although no point lies outside: the result ends early, or there is nothing to compare.
+    /// The reason why a signal fails although no point lies outside: it ends early, or there is nothing to compare.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// True when the signal stays in its tube.
+    /// True if the signal stays in its tube and does not fail for another reason.
     pub within: bool,
 }
 
-/// A curve without empty cells.
+/// A signal without its empty cells.
 struct ComparisonCurve {
+    /// The times of the points (s).
     times: Vec<f64>,
+    /// The values of the points.
     values: Vec<f64>,
+    /// True if the signal is a staircase.
     held: bool,
 }
 
 impl ComparisonCurve {
+    /// The curve of a column.
     fn new(trajectory: &Trajectory, index: usize) -> Self {
         let column = &trajectory.columns[index];
         let full = trajectory.times.iter().zip(column).filter(|(_, v)| !v.is_nan());
@@ -88,19 +94,22 @@ impl ComparisonCurve {
         ComparisonCurve { times, values, held: trajectory.signals[index].kind.is_discrete() }
     }
 
+    /// The value at a time. `None` outside.
     fn at(&self, time: f64) -> Option<f64> {
         interpolate(&self.times, &self.values, self.held, time)
     }
 
+    /// The points as pairs of time and value.
     fn points(&self) -> impl Iterator<Item = (f64, f64)> {
         self.times.iter().copied().zip(self.values.iter().copied())
     }
 
+    /// The duration (s).
     fn span(&self) -> f64 {
         self.times.last().zip(self.times.first()).map_or(0.0, |(last, first)| last - first)
     }
 
-    /// Half height of the tube for a relative and an absolute part.
+    /// The half height of the tube around the curve.
     fn height(&self, tolerance: TubeTolerance) -> f64 {
         let low = self.values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -109,7 +118,8 @@ impl ComparisonCurve {
     }
 }
 
-/// Compares pairs of signals: index in the reference, index in the result. Times are compared as they stand.
+/// Compares pairs of signals, given by their index in the reference and in the result.
+/// Times are compared as they are, without a shift.
 pub fn compare(
     reference: &Trajectory,
     result: &Trajectory,
@@ -121,6 +131,7 @@ pub fn compare(
     TrajectoryComparison { within: signals.iter().all(|s| s.within), signals }
 }
 
+/// Compares one pair of signals.
 fn compare_signal(
     reference: &Trajectory,
     result: &Trajectory,
@@ -132,6 +143,7 @@ fn compare_signal(
     let mut left = ComparisonCurve::new(reference, a);
     let mut right = ComparisonCurve::new(result, b);
     align_literals(&mut right, &signal.kind, &other.kind);
+    // A signal that is discrete on one side is compared as a staircase on both.
     left.held |= right.held;
     right.held |= left.held;
     let time_tolerance = tolerance.time.unwrap_or(tolerance.relative * left.span());
@@ -165,7 +177,8 @@ fn compare_signal(
     out
 }
 
-/// Two files may number the literals of an enumeration differently: the result's numbers become the reference's.
+/// Makes the numbers of enumeration literals those of the reference, because two files may number them differently.
+/// Literals that the reference lacks get numbers beyond its own.
 fn align_literals(curve: &mut ComparisonCurve, reference: &Kind, result: &Kind) {
     let (Kind::Enumeration(ours), Kind::Enumeration(theirs)) = (reference, result) else { return };
     for value in &mut curve.values {
@@ -175,11 +188,12 @@ fn align_literals(curve: &mut ComparisonCurve, reference: &Kind, result: &Kind) 
     }
 }
 
-/// Root mean square and largest difference over the reference's rows that the result covers.
+/// Computes the root mean square and the largest difference, at the rows of the reference that the result covers.
 fn differences(out: &mut SignalComparison, left: &ComparisonCurve, right: &ComparisonCurve) {
     let (mut sum, mut size, mut n) = (0.0, 0.0, 0.0);
     let mut largest: Option<(f64, f64)> = None;
     for (k, (time, value)) in left.points().enumerate() {
+        // At an event the row before it is compared with the value before it.
         let Some(other) = nearest_side(right, time, left.times.get(k + 1) == Some(&time)) else { continue };
         let difference = (other - value).abs();
         n += 1.0;
@@ -197,7 +211,8 @@ fn differences(out: &mut SignalComparison, left: &ComparisonCurve, right: &Compa
     }
 }
 
-/// The curve at a time; before the event where the asker stands before it and the curve jumps there too.
+/// The value of a curve at a time.
+/// With `before`, it is the value before an event, if the curve jumps there too.
 fn nearest_side(curve: &ComparisonCurve, time: f64, before: bool) -> Option<f64> {
     let first = curve.times.partition_point(|&t| t < time);
     if before && curve.times.get(first) == Some(&time) {
@@ -206,9 +221,10 @@ fn nearest_side(curve: &ComparisonCurve, time: f64, before: bool) -> Option<f64>
     curve.at(time)
 }
 
-/// Counts the result's points, and its values at the reference's times, that lie outside the tube.
+/// Counts the points outside the tube: those of the result, and its values at the times of the reference.
 fn violations(out: &mut SignalComparison, left: &ComparisonCurve, right: &ComparisonCurve) {
     let mut tube = ToleranceTube::new(&left.times, &left.values, left.held, out.time_tolerance, out.tolerance);
+    // A result with few points could cross the tube between them.
     let between = left.times.iter().filter(|&&t| right.times.binary_search_by(|x| x.total_cmp(&t)).is_err());
     let between = between.filter_map(|&t| right.at(t).map(|v| (t, v)));
     let mut points: Vec<(f64, f64)> = right.points().chain(between).collect();
@@ -225,6 +241,7 @@ fn violations(out: &mut SignalComparison, left: &ComparisonCurve, right: &Compar
     }
 }
 
+/// The reason for a failure other than points outside. `None` if there is none.
 fn reason(out: &SignalComparison, left: &ComparisonCurve, right: &ComparisonCurve) -> Option<String> {
     let (Some(&end), Some(&start)) = (left.times.last(), left.times.first()) else {
         return Some("the reference holds no value".to_owned());
@@ -232,6 +249,7 @@ fn reason(out: &SignalComparison, left: &ComparisonCurve, right: &ComparisonCurv
     let (Some(&last), Some(&first)) = (right.times.last(), right.times.first()) else {
         return Some("the result holds no value".to_owned());
     };
+    // The relative part covers rounding of times.
     let slack = out.time_tolerance + 1e-9 * left.span();
     if out.points == 0 {
         Some("the two share no time".to_owned())
@@ -244,7 +262,8 @@ fn reason(out: &SignalComparison, left: &ComparisonCurve, right: &ComparisonCurv
     }
 }
 
-/// The edges of the tube around a signal, for pictures: times, lower and upper edge.
+/// The edges of the tube around a signal, for plots: times, lower edge, upper edge.
+/// `height` and `width` are halves.
 pub fn tube(reference: &Trajectory, index: usize, height: f64, width: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let curve = ComparisonCurve::new(reference, index);
     let mut tube = ToleranceTube::new(&curve.times, &curve.values, curve.held, width, height);

@@ -1,17 +1,17 @@
-//! Trajectories written as CSV, row by row.
+//! Writes trajectories as CSV, row by row, so that a long run needs no memory for its rows.
 
 use std::io::{self, Write};
 
 use super::texts::NumberTextCache;
 use super::trajectory::{Kind, Signal};
 
-/// Where a CSV says its units.
+/// The place of the units in a CSV file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum CsvUnits {
-    /// Nowhere: names as other Modelica tools write them.
+    /// No units: plain names, as other Modelica tools write them.
     #[default]
     None,
-    /// Behind the names, as in `line.p [Pa]`.
+    /// Behind the names, such as `line.p [Pa]`.
     Header,
     /// In a row of their own below the names.
     Row,
@@ -30,32 +30,37 @@ impl std::str::FromStr for CsvUnits {
     }
 }
 
-/// Writes a head line and then one line a row.
+/// Writes a line of names, and then one line for each row.
 ///
-/// The first column is `time`. Booleans are `false` and `true`, enumerations their literals, Integers have no decimals,
-/// and Reals the fewest digits that read back the same.
+/// The first column is `time`. Booleans are `false` and `true`, enumerations are their literals, and Integers have no
+/// decimals. Reals have the fewest digits that read back as the same value.
 #[derive(Debug)]
 pub struct CsvWriter<W: Write> {
+    /// The destination.
     out: W,
+    /// The type of each signal.
     kinds: Vec<Kind>,
+    /// Numbers as text, for values that repeat.
     texts: NumberTextCache,
+    /// The line being made; kept to reuse its memory.
     line: Vec<u8>,
+    /// The number of bytes written so far.
     bytes: u64,
 }
 
 impl<W: Write> CsvWriter<W> {
-    /// Writes the head line.
+    /// Begins a file without units.
     ///
     /// # Errors
-    /// What `out` reports.
+    /// The errors of the destination.
     pub fn new(out: W, signals: &[Signal]) -> io::Result<Self> {
         Self::with_units(out, signals, CsvUnits::None)
     }
 
-    /// Writes the head line, and the units.
+    /// Begins a file with the line of names, and with units where `units` says.
     ///
     /// # Errors
-    /// What `out` reports.
+    /// The errors of the destination.
     pub fn with_units(out: W, signals: &[Signal], units: CsvUnits) -> io::Result<Self> {
         let behind = |unit: &str| match units {
             CsvUnits::Header if !unit.is_empty() => format!(" [{unit}]"),
@@ -71,6 +76,7 @@ impl<W: Write> CsvWriter<W> {
             line.push('s');
             for signal in signals {
                 line.push(',');
+                // `1` marks a signal without a unit, because an empty cell could be anything.
                 push_name(&mut line, if signal.unit.is_empty() { "1" } else { &signal.unit });
             }
             line.push('\n');
@@ -82,25 +88,25 @@ impl<W: Write> CsvWriter<W> {
         Ok(writer)
     }
 
-    /// Goes on behind `bytes` that an earlier writer of the same signals has written.
+    /// Continues a file behind `bytes`, which an earlier writer of the same signals has written.
     pub fn resume(out: W, signals: &[Signal], bytes: u64) -> Self {
         let kinds = signals.iter().map(|s| s.kind.clone()).collect();
         CsvWriter { out, kinds, texts: NumberTextCache::default(), line: Vec::new(), bytes }
     }
 
-    /// Hands everything to the system and returns how many bytes were written so far.
+    /// Flushes the destination and gives the number of bytes written so far.
     ///
     /// # Errors
-    /// What `out` reports.
+    /// The errors of the destination.
     pub fn flush(&mut self) -> io::Result<u64> {
         self.out.flush()?;
         Ok(self.bytes)
     }
 
-    /// Writes one row; `values` are in the order of the signals.
+    /// Writes one row. `values` has one value for each signal, in their order.
     ///
     /// # Errors
-    /// What `out` reports.
+    /// The errors of the destination.
     pub fn row(&mut self, time: f64, values: impl IntoIterator<Item = f64>) -> io::Result<()> {
         self.line.clear();
         self.texts.push(&mut self.line, time);
@@ -112,15 +118,16 @@ impl<W: Write> CsvWriter<W> {
         self.flush_line()
     }
 
-    /// Hands everything to the system and returns how many bytes were written.
+    /// Flushes the destination and gives the number of bytes of the file.
     ///
     /// # Errors
-    /// What `out` reports.
+    /// The errors of the destination.
     pub fn finish(mut self) -> io::Result<u64> {
         self.out.flush()?;
         Ok(self.bytes)
     }
 
+    /// Writes the line that was made.
     fn flush_line(&mut self) -> io::Result<()> {
         self.bytes += self.line.len() as u64;
         self.out.write_all(&self.line)
@@ -142,8 +149,9 @@ impl<W: Write + Send> crate::formats::ResultWriter for CsvWriter<W> {
     }
 }
 
-/// About how many bytes a row of these signals takes, to announce large files.
+/// The approximate size in bytes of a row of these signals, to announce large files.
 pub fn csv_bytes_per_row(signals: &[Signal]) -> u64 {
+    // A Real usually takes up to 17 digits, a point and a comma.
     let cell = |kind: &Kind| match kind {
         Kind::Real => 19,
         Kind::Integer => 4,
@@ -153,6 +161,7 @@ pub fn csv_bytes_per_row(signals: &[Signal]) -> u64 {
     12 + signals.iter().map(|s| cell(&s.kind)).sum::<u64>()
 }
 
+/// Appends a name, in quotes if a reader could take a character in it for a delimiter.
 fn push_name(line: &mut String, name: &str) {
     if name.contains([',', '"', '\n', '\r', ';', '\t']) {
         line.push('"');
@@ -163,6 +172,7 @@ fn push_name(line: &mut String, name: &str) {
     }
 }
 
+/// Appends a value as its type is written. A number that is no literal is written as a number.
 fn push_value(line: &mut Vec<u8>, texts: &mut NumberTextCache, kind: &Kind, value: f64) {
     match kind {
         Kind::Boolean if !value.is_nan() => line.extend_from_slice(if value == 0.0 { b"false" } else { b"true" }),
@@ -174,7 +184,7 @@ fn push_value(line: &mut Vec<u8>, texts: &mut NumberTextCache, kind: &Kind, valu
     }
 }
 
-/// The literal with this number, counted from 1.
+/// The literal with this number, counted from 1. `None` if there is none.
 fn literal(literals: &[String], value: f64) -> Option<&str> {
     let index = value - 1.0;
     let inside = index >= 0.0 && index < literals.len() as f64 && index.fract() == 0.0;

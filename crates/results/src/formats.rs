@@ -1,34 +1,34 @@
-//! The formats of result files, in one table.
+//! The formats of result files, in one table: CSV, Modelica .mat, and Parquet if it is compiled in.
 //!
-//! A name's ending enters, a writer or a reader leaves. To add a format, write a module with a [`ResultWriter`] and a
-//! reader, and give it a row of [`FORMATS`]: the command's options, help and messages follow from the table.
+//! The ending of a file name enters; a writer or reader leaves. To add a format, write a module with a [`ResultWriter`]
+//! and a reader, and give it a row of [`FORMATS`]. The command's options, help and messages follow from the table.
 
 use crate::{CsvUnits, CsvWriter, ReadStrictness, Signal, Trajectory, csv_bytes_per_row, mat, read_csv};
 use bramah_syntax::diag::{Code, Diagnostic, Sources, StageResult};
 use std::io::{self, Write};
 
-/// Where a writer puts its bytes.
+/// The destination of a writer's bytes.
 pub type ByteSink = Box<dyn Write + Send>;
 
-/// A format of result files.
+/// A format of result files: its name, and how files are written and read.
 pub struct ResultFormat {
     /// The ending of its files, in lower case without the dot.
     pub ending: &'static str,
-    /// Its name in help texts.
+    /// The name of the format in help texts.
     pub name: &'static str,
-    /// Parameters may be written without being asked for: a value that never changes takes no row of its own.
+    /// True if parameters may be written without being requested, because a constant value takes no space in each row.
     pub constants_are_free: bool,
-    /// A run that was killed can go on behind the rows that the file has.
+    /// True if a run that was killed can continue the file behind its last rows.
     pub grows: bool,
-    /// Begins a file.
+    /// Begins a file with these signals. Units are written where the format has a place for them.
     pub create: fn(ByteSink, &[Signal], CsvUnits) -> io::Result<Box<dyn ResultWriter>>,
-    /// Reads a file.
+    /// Reads a complete file.
     pub read: fn(ResultFile<'_>) -> StageResult<Trajectory>,
-    /// About how many bytes a row of these signals takes.
+    /// The approximate size in bytes of a row of these signals, to announce large files.
     pub bytes_per_row: fn(&[Signal]) -> u64,
 }
 
-/// The formats; the first one is that of names without an ending, and of stdout.
+/// All formats. The first one is used for names without an ending, and for the standard output.
 pub static FORMATS: &[ResultFormat] = &[
     ResultFormat {
         ending: "csv",
@@ -37,7 +37,7 @@ pub static FORMATS: &[ResultFormat] = &[
         grows: true,
         create: |out, signals, units| Ok(Box::new(CsvWriter::with_units(out, signals, units)?)),
         read: |file| {
-            // letters of old encodings in remarks and units do no harm
+            // Bytes of older encodings occur in remarks and units, where they do no harm.
             let text =
                 String::from_utf8(file.bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned());
             let id = file.sources.add(file.name.to_owned(), text);
@@ -66,50 +66,50 @@ pub static FORMATS: &[ResultFormat] = &[
     },
 ];
 
-/// A result file that was read from the disk.
+/// A result file whose bytes were read from the disk.
 pub struct ResultFile<'a> {
-    /// Its name, for messages.
+    /// The name of the file, for messages.
     pub name: &'a str,
-    /// What it holds.
+    /// The complete content.
     pub bytes: Vec<u8>,
-    /// The column of times, where it is not `time` or the first one.
+    /// The name of the time column. `None` for `time` or, without such a column, the first one.
     pub time_column: Option<&'a str>,
-    /// Texts that messages point into; a format of text adds its own.
+    /// The texts that messages refer to. A text format adds its own.
     pub sources: &'a mut Sources,
 }
 
-/// Takes the rows of a run.
+/// Takes the rows of a run, and writes them to a file.
 pub trait ResultWriter: Send {
-    /// Takes rows that stand one after the other: the time in seconds, then one value a signal.
+    /// Writes rows that stand one after the other: the time in s, then one value for each signal.
     ///
     /// # Errors
     /// What the sink reports.
     fn rows(&mut self, rows: &[f64]) -> io::Result<()>;
 
-    /// Hands all rows so far to the system; how many bytes the file has then, for formats that grow.
+    /// Writes all rows so far to the file. Formats that grow give the number of bytes that the file then has, others 0.
     ///
     /// # Errors
     /// What the sink reports.
     fn flush(&mut self) -> io::Result<u64>;
 
-    /// Writes what is left.
+    /// Completes the file.
     ///
     /// # Errors
-    /// What the sink reports, and what the format cannot hold.
+    /// The errors of the destination, and contents that the format cannot hold.
     fn finish(self: Box<Self>) -> io::Result<()>;
 }
 
-/// The format with an ending, in any case of letters.
+/// The format of an ending, in upper or lower case. `None` if there is no such format.
 pub fn of_ending(ending: &str) -> Option<&'static ResultFormat> {
     FORMATS.iter().find(|f| f.ending.eq_ignore_ascii_case(ending))
 }
 
-/// The endings of all formats, the usual one first.
+/// The endings of all formats, in the order of [`FORMATS`].
 pub fn endings() -> Vec<&'static str> {
     FORMATS.iter().map(|f| f.ending).collect()
 }
 
-/// The formats as a help text names them: `CSV, Modelica .mat or Parquet`.
+/// The names of all formats for a help text, such as `CSV, Modelica .mat or Parquet`.
 pub fn names() -> String {
     let all: Vec<&str> = FORMATS.iter().map(|f| f.name).collect();
     match all.split_last() {
@@ -119,11 +119,12 @@ pub fn names() -> String {
     }
 }
 
-/// Eight bytes a number, the time included.
+/// The size of a row in a binary format: eight bytes for each number, the time included.
 fn binary_bytes_per_row(signals: &[Signal]) -> u64 {
     8 * (signals.len() as u64 + 1)
 }
 
+/// The result of a binary reader, with its error as a diagnostic that names the file.
 fn usable(name: &str, read: Result<Trajectory, String>) -> StageResult<Trajectory> {
     match read {
         Ok(trajectory) => StageResult::new(trajectory, Vec::new()),

@@ -1,49 +1,51 @@
-//! Patterns that choose variables by name: `*` for any text, `?` for one character, everything else as it stands.
+//! Patterns that select variables by name: `*` for any text, `?` for one character, everything else literally.
 //!
-//! Brackets are literal, since names contain them: `v[1].p`, `v[*].p`. The name of an array means all its elements.
+//! Brackets are literal, since names contain them: `v[1].p`, `v[*].p`. The name of an array selects all its elements.
+//! Options of the command and outputs in Python are such patterns.
 
 use wildmatch::WildMatch;
 
-/// Patterns of which at least one must match.
+/// A list of patterns. A name is selected if at least one of them matches.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct GlobPatterns {
+    /// The patterns in the order given.
     patterns: Vec<String>,
 }
 
 impl GlobPatterns {
-    /// Takes lists such as `cyl.*,pump.b.p`; commas inside brackets or quotes do not part patterns.
+    /// Patterns from lists such as `cyl.*,pump.b.p`. Commas inside brackets or quotes do not separate patterns.
     pub fn new<S: AsRef<str>>(lists: &[S]) -> Self {
         GlobPatterns { patterns: lists.iter().flat_map(|list| split_list(list.as_ref())).collect() }
     }
 
-    /// True when there is no pattern at all.
+    /// True if there is no pattern.
     pub fn is_empty(&self) -> bool {
         self.patterns.is_empty()
     }
 
-    /// True when a pattern matches the whole name.
+    /// True if a pattern matches the complete name, or that of its array.
     pub fn matches(&self, name: &str) -> bool {
         self.patterns.iter().any(|p| matches(p, name))
     }
 
-    /// True when a pattern without `*` and `?` is this name, or that of its array.
+    /// True if a pattern is literally this name, or that of its array.
     pub fn names(&self, name: &str) -> bool {
         self.patterns.iter().any(|p| p == name || array(name) == Some(p.as_str()))
     }
 
-    /// The index of the first pattern that matches; behind all where none does.
+    /// The index of the first pattern that matches. `usize::MAX` if none does, so that such names sort last.
     pub fn position(&self, name: &str) -> usize {
         self.patterns.iter().position(|p| matches(p, name)).unwrap_or(usize::MAX)
     }
 
-    /// The patterns that match none of these names: probably spelling mistakes.
+    /// The patterns that match none of these names. They are probably misspelt.
     pub fn unused<'a>(&self, names: impl Iterator<Item = &'a str> + Clone) -> Vec<&str> {
         let none = |pattern: &&String| !names.clone().any(|name| matches(pattern, name));
         self.patterns.iter().filter(none).map(String::as_str).collect()
     }
 }
 
-/// Parts a list at commas that stand outside brackets, braces and quotes; blanks and quotes around items are removed.
+/// Splits a list at commas outside of brackets, braces and quotes. Blanks and quotes around items are removed.
 pub fn split_list(text: &str) -> Vec<String> {
     let mut items = Vec::new();
     let mut item = String::new();
@@ -51,6 +53,7 @@ pub fn split_list(text: &str) -> Vec<String> {
     for c in text.chars() {
         match c {
             '"' => quoted = !quoted,
+            // A closing bracket too many must not hide the commas after it.
             ',' if depth <= 0 && !quoted => items.push(std::mem::take(&mut item)),
             _ => {
                 depth += i32::from(matches!(c, '[' | '{' | '(')) - i32::from(matches!(c, ']' | '}' | ')'));
@@ -62,15 +65,17 @@ pub fn split_list(text: &str) -> Vec<String> {
     items.into_iter().map(|i| i.trim().to_owned()).filter(|i| !i.is_empty()).collect()
 }
 
+/// True if a pattern matches a name or its array.
 fn matches(pattern: &str, name: &str) -> bool {
     whole(pattern, name) || array(name).is_some_and(|array| whole(pattern, array))
 }
 
-/// The array of which a name is an element: `v` of `v[1]`, `A` of `A[1,2]`.
+/// The array that a name is an element of: `v` for `v[1]`, `A` for `A[1,2]`. `None` if it is no element.
 fn array(name: &str) -> Option<&str> {
     name.strip_suffix(']')?.rsplit_once('[').map(|(array, _)| array)
 }
 
+/// True if a pattern matches all of a name.
 fn whole(pattern: &str, name: &str) -> bool {
     WildMatch::new(pattern).matches(name)
 }

@@ -1,4 +1,8 @@
-//! Trajectories: what a run or a bench has recorded; written, read and compared.
+//! Trajectories, which a run or a test bench has recorded: the type, file formats, and comparison.
+//!
+//! Rows of a run and bytes of files enter; files and [`Trajectory`] values leave. The crates `circuit`, `analysis`,
+//! `plot`
+//! and `gap` and the command use it. It reads no files itself.
 
 mod cells;
 pub mod compare;

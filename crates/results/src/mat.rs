@@ -1,9 +1,12 @@
-//! Modelica result files, `.mat` version 4 ("dsres"), as Dymola, OMEdit, DyMat and SciPy read them.
+//! Modelica result files: MATLAB `.mat` version 4 with the layout "dsres", as Dymola, OMEdit, DyMat and SciPy read
+//! them.
 //!
-//! Six matrices: `Aclass` (what it is), `name` and `description` (one text a signal), `dataInfo` (where its values
-//! stand), `data_1` (constant signals, first and last time) and `data_2` (the others over time). Signals of equal
-//! values share one row. Text matrices are transposed (`binTrans`). Units stand in the description as
-//! `[unit|displayUnit]`, other types than Real as `:#(type=Boolean)`.
+//! A file has six matrices: `Aclass` (the kind of file), `name` and `description` (one text for each signal),
+//! `dataInfo`
+//! (the place of each signal's values), `data_1` (constant signals, at the first and last time) and `data_2` (the
+//! others
+//! over time). Signals with equal values share one row. All matrices are transposed (`binTrans`). Units are in the
+//! description as `[unit|displayUnit]`, and types other than Real as `:#(type=Boolean)`.
 
 use std::hash::Hasher;
 use std::io::{self, Write};
@@ -12,19 +15,19 @@ use rustc_hash::FxHashMap;
 
 use super::trajectory::{Kind, Signal, Trajectory};
 
-/// Element types of a version 4 matrix, as the last digits of its type number say.
+/// Element types of a version 4 matrix: the last two digits of its type number (double, single, int32, text).
 const DOUBLE: i32 = 0;
 const SINGLE: i32 = 10;
 const INT32: i32 = 20;
 const TEXT: i32 = 51;
 
-/// Other tools read no matrix of 2 GB or more.
+/// The largest size of a matrix in bytes. Other tools read no larger ones.
 const LARGEST: u64 = i32::MAX as u64;
 
-/// Writes a trajectory.
+/// Writes a trajectory as a complete file.
 ///
 /// # Errors
-/// What `out` reports, and [`io::ErrorKind::FileTooLarge`] beyond 2 GB, which the format does not hold.
+/// The errors of `out`, and [`io::ErrorKind::FileTooLarge`] beyond 2 GB, which the format cannot hold.
 pub fn write(mut out: impl Write, trajectory: &Trajectory) -> io::Result<()> {
     let plan = MatLayout::new(trajectory);
     let bytes = (plan.moving.len() as u64 + 1) * trajectory.len() as u64 * 8;
@@ -44,14 +47,18 @@ pub fn write(mut out: impl Write, trajectory: &Trajectory) -> io::Result<()> {
     out.flush()
 }
 
-/// Takes rows and writes them at the end: a column stands in one piece, and its length at its head.
+/// Collects rows and writes them at the end. The format has the number of rows at the head of a matrix, and needs to
+/// know
+/// which signals are constant.
 pub struct MatWriter<W: Write> {
+    /// The destination.
     out: W,
+    /// The rows so far.
     rows: Trajectory,
 }
 
 impl<W: Write> MatWriter<W> {
-    /// Writes nothing yet.
+    /// A writer without rows. Nothing is written before `finish`.
     pub fn new(out: W, signals: &[Signal]) -> Self {
         MatWriter { out, rows: Trajectory::new(signals.to_vec()) }
     }
@@ -72,30 +79,32 @@ impl<W: Write + Send> crate::formats::ResultWriter for MatWriter<W> {
     }
 }
 
-/// Writes one matrix of numbers; `values` by columns. Several after each other make a file that MATLAB and SciPy read.
+/// Writes one matrix of numbers, given by columns. Several matrices in a row are a file that MATLAB and SciPy read.
 ///
 /// # Errors
-/// What `out` reports.
+/// The errors of `out`.
 pub fn write_matrix(out: &mut impl Write, name: &str, rows: usize, values: &[f64]) -> io::Result<()> {
     header(out, name, DOUBLE, rows, values.len() / rows.max(1))?;
     values.iter().try_for_each(|v| out.write_all(&v.to_le_bytes()))
 }
 
-/// Where each signal's values go.
+/// The place of each signal's values.
 struct MatLayout {
-    /// Per signal: matrix (1 or 2) and row, counted from 1; row 1 is time.
+    /// For each signal its matrix (1 or 2) and row, counted from 1. Row 1 is time.
     rows: Vec<(i32, i32)>,
-    /// Signals whose values make the rows of `data_1`, after time.
+    /// The signals whose values are the rows of `data_1`, after time.
     constant: Vec<usize>,
-    /// Signals whose values make the rows of `data_2`, after time.
+    /// The signals whose values are the rows of `data_2`, after time.
     moving: Vec<usize>,
 }
 
 impl MatLayout {
+    /// Assigns a row to each signal. Signals with equal values get the same one.
     fn new(trajectory: &Trajectory) -> Self {
         let mut plan = MatLayout { rows: Vec::new(), constant: Vec::new(), moving: Vec::new() };
         let mut known: FxHashMap<u64, Vec<usize>> = FxHashMap::default();
         for (i, column) in trajectory.columns.iter().enumerate() {
+            // Columns with equal hashes are compared, since different ones may have the same hash.
             let like = known.entry(fingerprint(column)).or_default();
             let same = like.iter().find(|&&j| equal(&trajectory.columns[j], column));
             let row = match same {
@@ -110,7 +119,9 @@ impl MatLayout {
         plan
     }
 
+    /// Adds a row for a signal, in the matrix of constant or of changing signals.
     fn place(&mut self, signal: usize, column: &[f64]) -> (i32, i32) {
+        // By bits, so that NaN equals itself.
         let constant = column.windows(2).all(|w| w[0].to_bits() == w[1].to_bits());
         let (matrix, list) = if constant { (1, &mut self.constant) } else { (2, &mut self.moving) };
         list.push(signal);
@@ -118,16 +129,19 @@ impl MatLayout {
     }
 }
 
+/// A hash of the values of a column.
 fn fingerprint(column: &[f64]) -> u64 {
     let mut hasher = rustc_hash::FxHasher::default();
     column.iter().for_each(|v| hasher.write_u64(v.to_bits()));
     hasher.finish()
 }
 
+/// True if two columns agree to the bit.
 fn equal(a: &[f64], b: &[f64]) -> bool {
     a.iter().map(|v| v.to_bits()).eq(b.iter().map(|v| v.to_bits()))
 }
 
+/// Writes the header of a matrix: type, rows, columns, whether it is complex, and the name with a final zero byte.
 fn header(out: &mut impl Write, name: &str, kind: i32, rows: usize, columns: usize) -> io::Result<()> {
     let size = |n: usize| i32::try_from(n).map_err(|_| io::Error::from(io::ErrorKind::FileTooLarge));
     for word in [kind, size(rows)?, size(columns)?, 0, size(name.len() + 1)?] {
@@ -137,7 +151,7 @@ fn header(out: &mut impl Write, name: &str, kind: i32, rows: usize, columns: usi
     out.write_all(&[0])
 }
 
-/// The one matrix of texts that is not transposed.
+/// Writes `Aclass`, the only matrix that is not transposed: its rows are texts.
 fn write_class(out: &mut impl Write) -> io::Result<()> {
     let lines = ["Atrajectory", "1.1", "", "binTrans"];
     header(out, "Aclass", TEXT, lines.len(), 11)?;
@@ -149,6 +163,7 @@ fn write_class(out: &mut impl Write) -> io::Result<()> {
     Ok(())
 }
 
+/// Writes a matrix of texts, one in each column, filled up with blanks.
 fn write_texts(out: &mut impl Write, name: &str, texts: &[String]) -> io::Result<()> {
     let width = texts.iter().map(String::len).max().unwrap_or(0).max(1);
     header(out, name, TEXT, width, texts.len())?;
@@ -159,11 +174,13 @@ fn write_texts(out: &mut impl Write, name: &str, texts: &[String]) -> io::Result
     Ok(())
 }
 
+/// The description of a signal with its units and type in brackets, as other tools expect it.
 fn describe(signal: &Signal) -> String {
     let kind = match &signal.kind {
         Kind::Real => "",
         Kind::Integer => ":#(type=Integer)",
         Kind::Boolean => ":#(type=Boolean)",
+        // The format has no enumerations.
         Kind::Enumeration(_) => ":#(type=Integer)",
     };
     let display = if signal.display_unit.is_empty() || signal.display_unit == signal.unit {
@@ -180,6 +197,7 @@ fn describe(signal: &Signal) -> String {
     }
 }
 
+/// Writes `dataInfo`: for each signal its matrix, its row, 0 for linear interpolation, and -1 for no extrapolation.
 fn write_info(out: &mut impl Write, plan: &MatLayout) -> io::Result<()> {
     header(out, "dataInfo", INT32, 4, plan.rows.len() + 1)?;
     let infos = std::iter::once([0, 1, 0, -1]).chain(plan.rows.iter().map(|&(matrix, row)| [matrix, row, 0, -1]));
@@ -189,6 +207,7 @@ fn write_info(out: &mut impl Write, plan: &MatLayout) -> io::Result<()> {
     Ok(())
 }
 
+/// Writes `data_1`, with two columns: the values at the first and at the last time.
 fn write_constants(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayout) -> io::Result<()> {
     header(out, "data_1", DOUBLE, plan.constant.len() + 1, 2)?;
     let ends = [trajectory.times.first(), trajectory.times.last()];
@@ -202,6 +221,7 @@ fn write_constants(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayo
     Ok(())
 }
 
+/// Writes `data_2`, with one column for each time.
 fn write_moving(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayout) -> io::Result<()> {
     header(out, "data_2", DOUBLE, plan.moving.len() + 1, trajectory.len())?;
     for (row, time) in trajectory.times.iter().enumerate() {
@@ -213,19 +233,24 @@ fn write_moving(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayout)
     Ok(())
 }
 
-/// One matrix as read.
+/// One matrix of a file that is read.
 struct MatMatrix<'a> {
+    /// The name.
     name: String,
+    /// The type number, whose last two digits are the element type.
     kind: i32,
+    /// The number of rows.
     rows: usize,
+    /// The number of columns.
     columns: usize,
+    /// The elements, column by column.
     bytes: &'a [u8],
 }
 
-/// Reads a trajectory, of bramah or another Modelica tool.
+/// Reads a file of bramah or another Modelica tool.
 ///
 /// # Errors
-/// A sentence that says what is wrong with the file.
+/// A sentence about what is wrong with the file.
 pub fn read(bytes: &[u8]) -> Result<Trajectory, String> {
     let matrices = matrices(bytes)?;
     let find = |name: &str| {
@@ -233,6 +258,7 @@ pub fn read(bytes: &[u8]) -> Result<Trajectory, String> {
     };
     let class = find("Aclass")?;
     let layout = class.text_by_row(3);
+    // Tools write either layout: signals in columns, or in rows.
     if class.text_by_row(0) != "Atrajectory" || (layout != "binTrans" && layout != "binNormal") {
         return Err("the file is no Modelica result (`Aclass` does not say so)".to_owned());
     }
@@ -248,6 +274,7 @@ pub fn read(bytes: &[u8]) -> Result<Trajectory, String> {
         let source = if matrix == 1 { first } else { second };
         let values = source.series(place, rows, matrix == 1, transposed);
         let values = values.ok_or_else(|| format!("the values of `{name}` lie outside the data"))?;
+        // The first signal is time.
         if i == 0 {
             trajectory.times = values;
         } else {
@@ -258,7 +285,7 @@ pub fn read(bytes: &[u8]) -> Result<Trajectory, String> {
     Ok(trajectory)
 }
 
-/// `pressure [Pa|bar:#(type=Real)]` taken apart.
+/// A signal from its name and description, such as `pressure [Pa|bar:#(type=Real)]`.
 fn signal(name: &str, description: &str) -> Signal {
     let mut signal = Signal::new(name);
     let bracket = description.strip_suffix(']').and_then(|d| d.rsplit_once('['));
@@ -279,6 +306,7 @@ fn signal(name: &str, description: &str) -> Signal {
     signal
 }
 
+/// The matrices of a file, in order. The bytes are not copied.
 fn matrices(bytes: &[u8]) -> Result<Vec<MatMatrix<'_>>, String> {
     let damaged = || "the file is damaged or no .mat file of version 4".to_owned();
     let mut at = 0;
@@ -295,6 +323,7 @@ fn matrices(bytes: &[u8]) -> Result<Vec<MatMatrix<'_>>, String> {
         let from = at + 20 + name;
         let length = rows.checked_mul(columns).and_then(|n| n.checked_mul(width)).ok_or_else(damaged)?;
         let end = from.checked_add(length).ok_or_else(damaged)?;
+        // Sizes come from the file and may be wrong in a damaged one.
         let data = bytes.get(from..end).ok_or_else(damaged)?;
         let title = String::from_utf8_lossy(&bytes[at + 20..from]).trim_end_matches('\0').to_owned();
         all.push(MatMatrix { name: title, kind, rows, columns, bytes: data });
@@ -303,10 +332,12 @@ fn matrices(bytes: &[u8]) -> Result<Vec<MatMatrix<'_>>, String> {
     Ok(all)
 }
 
+/// The size of an element in bytes, by the type number. `None` if it is no type of this format.
 fn element_bytes(kind: i32) -> Option<usize> {
     match kind {
         DOUBLE => Some(8),
         SINGLE | INT32 => Some(4),
+        // 30 is a signed and 40 an unsigned integer of 16 bits; 50 is one of 8 bits.
         30 | 40 => Some(2),
         50 | TEXT => Some(1),
         _ => None,
@@ -314,6 +345,7 @@ fn element_bytes(kind: i32) -> Option<usize> {
 }
 
 impl MatMatrix<'_> {
+    /// The element with this index, counted by columns. `None` outside.
     fn element(&self, index: usize) -> Option<f64> {
         let width = element_bytes(self.kind)?;
         let b = self.bytes.get(index * width..(index + 1) * width)?;
@@ -327,7 +359,7 @@ impl MatMatrix<'_> {
         })
     }
 
-    /// Entry `k` of item `i`: items are columns when transposed, else rows.
+    /// Entry `k` of item `i`. Items are columns if `transposed`, else rows. `None` outside.
     fn at(&self, i: usize, k: usize, transposed: bool) -> Option<f64> {
         let (row, column) = if transposed { (k, i) } else { (i, k) };
         if row >= self.rows || column >= self.columns {
@@ -336,7 +368,8 @@ impl MatMatrix<'_> {
         self.element(column * self.rows + row)
     }
 
-    /// The values of the signal at `place` (counted from 1, negative for negated ones), `rows` of them.
+    /// The `rows` values of the signal at `place`, which counts from 1 and is negative for negated values.
+    /// Of a `constant` signal the first value is repeated. `None` if the place is outside of the matrix.
     fn series(&self, place: i64, rows: usize, constant: bool, transposed: bool) -> Option<Vec<f64>> {
         let index = usize::try_from(place.unsigned_abs()).ok()?.checked_sub(1)?;
         let sign = if place < 0 { -1.0 } else { 1.0 };
@@ -344,11 +377,13 @@ impl MatMatrix<'_> {
         (0..rows).map(|r| self.at(row(r), index, transposed).map(|v| sign * v)).collect()
     }
 
+    /// The text in a row, without blanks at its end.
     fn text_by_row(&self, row: usize) -> String {
         let bytes = (0..self.columns).filter_map(|c| self.bytes.get(c * self.rows + row).copied());
         trimmed(bytes.collect())
     }
 
+    /// All texts of a matrix, which are in columns if `transposed`.
     fn texts(&self, transposed: bool) -> Vec<String> {
         if transposed {
             self.bytes.chunks(self.rows.max(1)).map(|c| trimmed(c.to_vec())).collect()
@@ -358,6 +393,7 @@ impl MatMatrix<'_> {
     }
 }
 
+/// Bytes as text, without zeros and blanks at the end.
 fn trimmed(bytes: Vec<u8>) -> String {
     String::from_utf8_lossy(&bytes).trim_end_matches(['\0', ' ']).to_owned()
 }

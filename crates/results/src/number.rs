@@ -1,25 +1,28 @@
-//! Numbers as text: the fewest digits that read back the same.
+//! Numbers as text, with the fewest digits that read back as the same value, and the other way round.
+//! All writers and readers of this crate use these functions, and so do messages.
 
-/// Appends `value` with the fewest digits that read back the same; nothing for NaN, which is an empty cell.
+/// Appends a number with the fewest digits that read back as the same value.
+/// NaN appends nothing, which is an empty cell.
 ///
-/// Exponents are used outside `1e-5 <= |value| < 1e16`.
+/// Exponents are used unless `1e-5 <= |value| < 1e16`.
 pub fn push(out: &mut String, value: f64) {
     if value.is_nan() {
         return;
     }
+    // The sign of a zero is dropped.
     if value == 0.0 {
         return out.push('0');
     }
     out.push_str(digits(&mut ryu::Buffer::new(), value));
 }
 
-/// The fewest digits that read back the same; whole numbers have no decimals.
+/// The fewest digits that read back as the same value. Whole numbers have no decimals. The text is in the buffer.
 pub(super) fn digits(buffer: &mut ryu::Buffer, value: f64) -> &str {
     let text = buffer.format(value);
     text.strip_suffix(".0").unwrap_or(text)
 }
 
-/// The same as a new text; `NaN` is spelled out.
+/// The number as a new text. NaN is spelled out.
 pub fn text(value: f64) -> String {
     if value.is_nan() {
         return "NaN".to_owned();
@@ -29,22 +32,25 @@ pub fn text(value: f64) -> String {
     out
 }
 
-/// A number for people: `digits` significant digits, without trailing zeros.
+/// A number for people, with so many significant digits and without trailing zeros.
 pub fn rounded(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return text(value);
     }
     let digits = digits.max(1);
+    // The text with an exponent rounds to significant digits; reading it back gives the number to be printed.
     let short: f64 = format!("{value:.*e}", digits - 1).parse().unwrap_or(value);
     text(short)
 }
 
-/// Reads a number as people and measuring programs write it; a decimal comma only where commas do not part cells.
+/// Reads a number as people and measuring programs write it. `None` if the cell is no number.
+/// With `decimal_comma` a comma may stand for the point; that is allowed only where commas do not separate cells.
 pub fn parse(cell: &str, decimal_comma: bool) -> Option<f64> {
     let cell = cell.trim();
     if let Ok(value) = cell.parse::<f64>() {
         return Some(value);
     }
+    // A comma together with a point is a separator of thousands, whose meaning is not clear.
     if decimal_comma && cell.matches(',').count() == 1 && !cell.contains('.') {
         return cell.replace(',', ".").parse().ok();
     }

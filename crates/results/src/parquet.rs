@@ -1,22 +1,22 @@
-//! Tables written as Apache Parquet, which pandas, Polars, DuckDB and Spark read: columns with their types, in groups of
-//! rows, so that a long run needs no more memory than one group. The format is that of the crate `parquet`; values are
-//! not compressed.
+//! Writes and reads Apache Parquet, which pandas, Polars, DuckDB and Spark read.
+//! Columns keep their types. They are written in groups of rows, so that a long run needs the memory of one group only.
+//! The crate `parquet` implements the format; values are not compressed.
 
 #[cfg(feature = "parquet")]
 pub use reader::read;
 #[cfg(feature = "parquet")]
 pub use writer::{ParquetWriter, write_table};
 
-/// The values of one column of a group of rows.
+/// The values of one column, for one group of rows.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ColumnValues<'a> {
-    /// Numbers; NaN where there is none.
+    /// Numbers. NaN if there is no value.
     Real(Vec<f64>),
-    /// Whole numbers; `None` where there is none.
+    /// Integers. `None` if there is no value.
     Integer(Vec<Option<i64>>),
-    /// `None` where there is none.
+    /// Boolean values. `None` if there is no value.
     Boolean(Vec<Option<bool>>),
-    /// `None` where there is none.
+    /// Texts. `None` if there is no value.
     Text(Vec<Option<&'a str>>),
 }
 
@@ -34,25 +34,31 @@ mod writer {
     use std::io::{self, Write};
     use std::sync::Arc;
 
-    /// What stands in the head of a column.
+    /// The description of a column.
     struct ColumnHeader {
+        /// The name of the column.
         name: String,
+        /// The unit. Empty if there is none.
         unit: String,
+        /// The type in the file.
         kind: Physical,
     }
 
-    /// Writes a file group by group.
+    /// Writes a file, one group of rows after the other.
     pub struct ParquetWriter<W: Write + Send> {
+        /// The writer of the crate `parquet`.
         file: SerializedFileWriter<W>,
+        /// The types of all columns, time first.
         kinds: Vec<Kind>,
     }
 
     impl<W: Write + Send> ParquetWriter<W> {
-        /// Begins a file of a run: `time` in seconds, then the signals. Booleans, Integers and enumerations keep their
-        /// types, the latter as texts; units stand as JSON in the file's metadata below `units`.
+        /// Begins the file of a run: `time` in s, then the signals. Booleans, Integers and enumerations keep their
+        /// types, the
+        /// latter as texts. Units are in the metadata of the file, as JSON below the key `units`.
         ///
         /// # Errors
-        /// What `out` reports.
+        /// The errors of the destination.
         pub fn new(out: W, signals: &[Signal]) -> io::Result<Self> {
             let time = ColumnHeader { name: "time".into(), unit: "s".into(), kind: Physical::DOUBLE };
             let head =
@@ -65,21 +71,22 @@ mod writer {
         /// Writes rows that stand one after the other, each with its time first, as one group.
         ///
         /// # Errors
-        /// What `out` reports.
+        /// The errors of the destination.
         pub fn rows(&mut self, rows: &[f64]) -> io::Result<()> {
             if rows.is_empty() {
                 return Ok(());
             }
             let width = self.kinds.len();
+            // Rows become columns: every `width`-th number belongs to the same one.
             let column = |k: usize| rows.iter().skip(k).step_by(width).copied();
             let columns = self.kinds.iter().enumerate().map(|(k, kind)| values(kind, column(k)));
             write_group(&mut self.file, columns)
         }
 
-        /// Writes what says where everything is, and hands all to the system.
+        /// Writes the footer of the file, which says where everything is, and flushes the destination.
         ///
         /// # Errors
-        /// What `out` reports.
+        /// The errors of the destination.
         pub fn finish(mut self) -> io::Result<()> {
             self.file.finish().map_err(reported)?;
             self.file.inner_mut().flush()
@@ -101,10 +108,10 @@ mod writer {
         }
     }
 
-    /// Writes a table whose columns are at hand.
+    /// Writes a table whose columns are in memory.
     ///
     /// # Errors
-    /// What `out` reports.
+    /// The errors of the destination.
     pub fn write_table(out: impl Write + Send, columns: &[(String, ColumnValues<'_>)]) -> io::Result<()> {
         let kind = |values: &ColumnValues<'_>| match values {
             ColumnValues::Real(_) => Physical::DOUBLE,
@@ -122,6 +129,7 @@ mod writer {
         file.finish().map(|_| ()).map_err(reported)
     }
 
+    /// Begins a file: schema, metadata, and properties of the columns.
     fn begin<W: Write + Send>(out: W, heads: &[ColumnHeader]) -> io::Result<SerializedFileWriter<W>> {
         let fields: Result<Vec<_>, ParquetError> = heads.iter().map(|h| field(h).map(Arc::new)).collect();
         let root =
@@ -133,14 +141,14 @@ mod writer {
             .set_created_by(concat!("bramah ", env!("CARGO_PKG_VERSION")).to_owned())
             .set_key_value_metadata(Some(vec![units]))
             .set_dictionary_enabled(false);
-        // the few texts of an enumeration or a status stand once
+        // Texts of an enumeration or a status repeat; a dictionary stores each of them once.
         for head in heads.iter().filter(|h| h.kind == Physical::BYTE_ARRAY) {
             properties = properties.set_column_dictionary_enabled(ColumnPath::new(vec![head.name.clone()]), true);
         }
         SerializedFileWriter::new(out, Arc::new(root), Arc::new(properties.build())).map_err(reported)
     }
 
-    /// A column of the schema; only numbers are always there.
+    /// A column of the schema. Only numbers are required, since NaN stands for a missing one; other types are optional.
     fn field(head: &ColumnHeader) -> Result<Type, ParquetError> {
         let always = head.kind == Physical::DOUBLE;
         Type::primitive_type_builder(&head.name, head.kind)
@@ -149,6 +157,7 @@ mod writer {
             .build()
     }
 
+    /// Writes a group of rows, column by column in the order of the schema.
     fn write_group<'a, W: Write + Send>(
         file: &mut SerializedFileWriter<W>,
         columns: impl Iterator<Item = ColumnValues<'a>>,
@@ -162,6 +171,7 @@ mod writer {
         group.close().map(|_| ()).map_err(reported)
     }
 
+    /// Writes the values of one column.
     fn write_column(column: &mut SerializedColumnWriter<'_>, values: ColumnValues<'_>) -> Result<(), ParquetError> {
         match values {
             ColumnValues::Real(v) => {
@@ -176,16 +186,18 @@ mod writer {
         Ok(())
     }
 
-    /// Values of which some may not be there.
+    /// Writes values of which some may be missing.
     fn write_known<T: DataType>(
         column: &mut SerializedColumnWriter<'_>,
         values: Vec<Option<T::T>>,
     ) -> Result<(), ParquetError> {
+        // Definition levels: 1 for a value, 0 for a missing one. Only existing values are stored.
         let there: Vec<i16> = values.iter().map(|v| i16::from(v.is_some())).collect();
         let known: Vec<T::T> = values.into_iter().flatten().collect();
         column.typed::<T>().write_batch(&known, Some(&there), None).map(|_| ())
     }
 
+    /// The type in the file for a type of signal.
     fn physical(kind: &Kind) -> Physical {
         match kind {
             Kind::Real => Physical::DOUBLE,
@@ -195,7 +207,7 @@ mod writer {
         }
     }
 
-    /// The values of a signal as what they stand for.
+    /// The values of a signal in the type of its column. NaN becomes a missing value.
     fn values(kind: &Kind, column: impl Iterator<Item = f64>) -> ColumnValues<'_> {
         let known = |v: f64| Some(v).filter(|v| !v.is_nan());
         match kind {
@@ -209,7 +221,8 @@ mod writer {
         }
     }
 
-    /// What the system said stays what it said: a full disk is reported as such.
+    /// The error of the crate as an `io::Error`. One of the system is unwrapped, so that a full disk is reported as
+    /// such.
     fn reported(error: ParquetError) -> io::Error {
         match error {
             ParquetError::External(inner) => match inner.downcast::<io::Error>() {
@@ -231,11 +244,11 @@ mod reader {
     use ::parquet::schema::types::ColumnDescriptor;
     use std::collections::BTreeMap;
 
-    /// Reads a flat table: a run of bramah, or one that another program wrote. `time_column` is the column of times in
-    /// seconds; `time` or the first one without it.
+    /// Reads a flat table: a run of bramah, or a file of another program.
+    /// `time_column` is the column of times (s). Without it, it is `time` or the first column.
     ///
     /// # Errors
-    /// A sentence: it is no Parquet, a column holds no numbers or texts, or there is no such time column.
+    /// A sentence: it is no Parquet file, a column holds neither numbers nor texts, or there is no such time column.
     pub fn read(file: impl ChunkReader + 'static, time_column: Option<&str>) -> Result<Trajectory, String> {
         let file = SerializedFileReader::new(file).map_err(|e| e.to_string())?;
         let head = file.metadata().file_metadata();
@@ -274,12 +287,13 @@ mod reader {
         Ok(Trajectory { signals, times, columns: values })
     }
 
-    /// The JSON below `units` of bramah's own files.
+    /// The unit of each column from the metadata of bramah's own files. Empty for other files.
     fn units(entries: Option<&Vec<::parquet::file::metadata::KeyValue>>) -> BTreeMap<String, String> {
         let entry = entries.into_iter().flatten().find(|e| e.key == "units");
         entry.and_then(|e| serde_json::from_str(e.value.as_deref()?).ok()).unwrap_or_default()
     }
 
+    /// The type of a signal. Decimal numbers are stored as integers, but are Reals.
     fn kind(column: &ColumnDescriptor, literals: Vec<String>) -> Kind {
         match column.physical_type() {
             Physical::BOOLEAN => Kind::Boolean,
@@ -289,7 +303,8 @@ mod reader {
         }
     }
 
-    /// A cell as a number, texts by the order in which they come; NaN where there is none.
+    /// The value of a cell. A missing one is NaN; a text is its number among the distinct texts of the column, from 1.
+    /// `None` for types that are neither numbers nor texts.
     fn number(field: &Field, literals: &mut Vec<String>) -> Option<f64> {
         Some(match field {
             Field::Null => f64::NAN,

@@ -1,7 +1,9 @@
-//! CSV files read back: results of any program, and recordings of a bench that drive or judge a model.
+//! Reads CSV files: results of any program, and recordings of a test bench that drive or judge a model.
+//! Text enters, a [`Trajectory`] or diagnostics leave. The crates `analysis` and `gap` and the command call
+//! [`read_csv`].
 //!
-//! Recognised without being told: delimiters `,` `;` and tab, decimal commas, a row of units below the names (or
-//! `name [unit]`), `#` lines, a byte order mark, quoted names. Everything that is wrong is said with its place.
+//! These are recognised: delimiters `,` `;` and tab, decimal commas, a row of units below the names (or `name [unit]`),
+//! lines with `#`, a byte order mark, quoted names. Every fault is reported with its place.
 
 use std::ops::Range;
 
@@ -13,14 +15,17 @@ use super::trajectory::{Kind, Signal, Trajectory};
 use bramah_expr::units::MeasurementUnit;
 use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources, Span, StageResult};
 
-/// What is asked of a file.
+/// The requirements on a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ReadStrictness<'a> {
-    /// Every column is read. Empty cells, words (`true`, literals) and rows of equal time are fine.
+    /// All columns are read. Empty cells, words (`true`, literals) and rows of equal time are allowed.
     Result,
-    /// Only these columns are read, and must hold numbers. Time must not fall and have no gaps; rows of equal time are jumps.
+    /// Only these columns are read, and they must hold numbers. Time must not decrease or have gaps; rows of equal time
+    /// are
+    /// jumps.
     Inputs(&'a [String]),
-    /// Only these columns are read. Time must grow without gaps; cells of `inputs` must all hold numbers, those of
+    /// Only these columns are read. Time must increase without gaps. The cells of `inputs` must all hold numbers, those
+    /// of
     /// `outputs` may be empty.
     Recording {
         /// Columns that drive the model.
@@ -30,16 +35,16 @@ pub enum ReadStrictness<'a> {
     },
 }
 
-/// Names under which programs write the time, tried in this order before the first column is taken.
+/// Names by which programs call the time, in the order in which they are tried before the first column is taken.
 const TIME_NAMES: [&str; 6] = ["time", "t", "t_s", "time_s", "timestamp", "zeit"];
 
-/// Reads a CSV file that was added to `sources`.
+/// Reads a CSV file whose text was added to `sources`.
 ///
-/// The time column is `time_column`, else one with a usual name, else the first.
+/// The time column is `time_column`, else one with a usual name, else the first one.
 ///
 /// # Errors
-/// [`Code::BadData`] with file, line and column: missing or doubled columns, time that does not grow, gaps, NaN, words
-/// where a number is needed, rows of other length. A fault is reported once a column, with the number of cells.
+/// [`Code::BadData`] with file, line and column: missing or doubled columns, decreasing time, gaps, NaN, words where a
+/// number is needed, rows of another length. A kind of fault is reported once a column, with the number of cells.
 pub fn read_csv(
     sources: &Sources,
     file: FileId,
@@ -64,6 +69,7 @@ pub fn read_csv(
     reader.jumps = matches!(strictness, ReadStrictness::Inputs(_));
     let mut first = true;
     while rows.next_row(&mut cells) {
+        // Only the first row below the names may be one of units.
         if !(std::mem::take(&mut first) && head.take_units(&cells, time, rows.decimal_comma())) {
             reader.row(&cells, &head.names);
         }
@@ -71,14 +77,14 @@ pub fn read_csv(
     reader.finish(&head, &wanted)
 }
 
-/// The names of the columns of a CSV text, without units.
+/// The names of the columns of a CSV text, without their units.
 pub fn column_names(text: &str) -> Vec<String> {
     let mut cells = Vec::new();
     CellRows::new(text).next_row(&mut cells);
     cells.iter().map(|c| split_unit(&c.text).0.to_owned()).collect()
 }
 
-/// The unit that the file itself gives a column, and where it does.
+/// The unit that the file gives a column, and its place. `None` if there is no such column or no unit.
 pub(super) fn unit_place(sources: &Sources, file: FileId, column: &str) -> Option<(String, Span)> {
     let mut rows = CellRows::new(&sources.get(file).text);
     let mut cells = Vec::new();
@@ -88,6 +94,7 @@ pub(super) fn unit_place(sources: &Sources, file: FileId, column: &str) -> Optio
     let mut head = HeaderRow::new(file, &cells, rows.decimal_comma());
     let index = head.find(column).ok()?;
     if rows.next_row(&mut cells) {
+        // Any column with a cell will do here, because only words are looked for.
         let time = (0..head.width).find(|&i| cells.get(i).is_some_and(|c| !c.text.is_empty())).unwrap_or(0);
         head.take_units(&cells, time, rows.decimal_comma());
     }
@@ -95,28 +102,35 @@ pub(super) fn unit_place(sources: &Sources, file: FileId, column: &str) -> Optio
     (!unit.is_empty()).then(|| (unit, span(file, &head.unit_places[index])))
 }
 
-/// A column that is read.
+/// A column that is to be read.
 #[derive(Clone, Copy, Debug)]
 struct ColumnRequest {
     /// Its index in the file.
     index: usize,
-    /// Every cell must hold a number.
+    /// True if every cell must hold a number.
     complete: bool,
 }
 
-/// The row of names, and of units where there is one.
+/// The row of names, and the units if the file gives them.
 struct HeaderRow {
+    /// The file.
     file: FileId,
+    /// The name of each column, without its unit.
     names: Vec<String>,
+    /// The unit of each column. Empty if there is none.
     units: Vec<String>,
+    /// The place of each name.
     places: Vec<Range<usize>>,
-    /// Where the units stand: the cell of the name, or of the row of units.
+    /// The place of each unit: the cell of the name, or of the row of units.
     unit_places: Vec<Range<usize>>,
+    /// The number of columns.
     width: usize,
+    /// True if all names are numbers, so that the row of names is missing.
     numeric: bool,
 }
 
 impl HeaderRow {
+    /// The names of the first row, with the units that stand behind them.
     fn new(file: FileId, cells: &[TextCell<'_>], decimal_comma: bool) -> Self {
         let mut head = HeaderRow {
             file,
@@ -137,11 +151,15 @@ impl HeaderRow {
         head
     }
 
+    /// An error at a place of the header.
     fn error(&self, place: Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Diagnostic {
         Diagnostic::new(Code::BadData, message).at(span(self.file, &place), label)
     }
 
-    /// The time column and the columns to read.
+    /// The index of the time column, and the columns to be read.
+    ///
+    /// # Errors
+    /// The row of names is missing, or there is no such column, or it is there twice.
     fn choose(
         &self,
         time_column: Option<&str>,
@@ -166,11 +184,13 @@ impl HeaderRow {
         Ok((time, wanted))
     }
 
+    /// The index of a column with a usual name for time, else 0.
     fn usual_time(&self) -> usize {
         let same = |usual: &str| self.names.iter().position(|n| n.eq_ignore_ascii_case(usual));
         TIME_NAMES.iter().find_map(|usual| same(usual)).unwrap_or(0)
     }
 
+    /// All named columns except for time.
     fn all_but(&self, time: usize) -> Result<Vec<ColumnRequest>, Vec<Diagnostic>> {
         let columns = (0..self.width).filter(|&i| i != time && !self.names[i].is_empty());
         let wanted: Vec<ColumnRequest> = columns.map(|index| ColumnRequest { index, complete: false }).collect();
@@ -181,6 +201,7 @@ impl HeaderRow {
         Ok(wanted)
     }
 
+    /// The columns of these names. The errors list all that are missing.
     fn named(&self, inputs: &[String], outputs: &[String]) -> Result<Vec<ColumnRequest>, Vec<Diagnostic>> {
         let mut wanted = Vec::new();
         let mut problems = Vec::new();
@@ -194,6 +215,7 @@ impl HeaderRow {
         if problems.is_empty() { Ok(wanted) } else { Err(problems) }
     }
 
+    /// The index of the column of this name, of which there must be one only.
     fn find(&self, name: &str) -> Result<usize, Diagnostic> {
         let mut found = (0..self.width).filter(|&i| self.names[i] == name);
         match (found.next(), found.next()) {
@@ -206,6 +228,7 @@ impl HeaderRow {
         }
     }
 
+    /// The error that a column is missing, with the names that there are and the nearest one.
     fn missing(&self, name: &str) -> Diagnostic {
         let place = self.places[0].start..self.places[self.width - 1].end;
         let known: Vec<String> = self.names.iter().map(|n| format!("`{n}`")).collect();
@@ -220,10 +243,11 @@ impl HeaderRow {
         problem.help("name one of these")
     }
 
-    /// Takes the row as units when it holds words only, also in the time column.
+    /// Takes a row as units if it holds only words, in the time column too. False if it does not; it is then a row of
+    /// values.
     fn take_units(&mut self, cells: &[TextCell<'_>], time: usize, decimal_comma: bool) -> bool {
         let is_word = |c: &TextCell<'_>| !c.text.is_empty() && number::parse(&c.text, decimal_comma).is_none();
-        // `1` is the unit of what has none
+        // `1` is the unit of what has none.
         let words_only = cells.iter().all(|c| c.text.is_empty() || is_word(c) || c.text.trim() == "1");
         if cells.len() != self.width || !words_only || !cells.get(time).is_some_and(is_word) {
             return false;
@@ -239,7 +263,7 @@ impl HeaderRow {
     }
 }
 
-/// `tau [N]` is a name with a unit; `v[3]` is a name.
+/// Splits a name from its unit: `tau [N]` has one, `v[3]` is a name. The unit is empty if there is none.
 fn split_unit(text: &str) -> (&str, &str) {
     let inside = text.strip_suffix(']').and_then(|t| t.rsplit_once(" ["));
     match inside {
@@ -248,56 +272,83 @@ fn split_unit(text: &str) -> (&str, &str) {
     }
 }
 
+/// The span of some bytes of the file.
 fn span(file: FileId, place: &Range<usize>) -> Span {
     let byte = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
     Span { file, start: byte(place.start), end: byte(place.end) }
 }
 
-/// What can be wrong with a cell or row.
+/// The kinds of faults of a cell or row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum CellFault {
+    /// The row has another number of cells than the row of names.
     Length,
+    /// The time is no finite number.
     NoTime,
+    /// The time is smaller than that of the row before.
     TimeFalls,
+    /// The time is equal to that of the row before.
     TimeStands,
+    /// The step in time is much longer than usual.
     Gap,
+    /// A word stands where a number is needed.
     Word,
+    /// A cell of an input is empty.
     Empty,
+    /// A value is infinite or NaN.
     NotFinite,
 }
 
-/// The first cell with a fault, and how many there are.
+/// The first cell with a fault, and the number of such cells.
 struct FaultRecord {
+    /// The place of the first one.
     place: Range<usize>,
+    /// Its text, or what a message says about it.
     text: String,
+    /// How many there are.
     count: usize,
 }
 
-/// Values of one column as they come in.
+/// The values of one column while the file is read.
 struct ColumnBuilder {
+    /// The index of the column in the file.
     index: usize,
+    /// True if every cell must hold a number.
     complete: bool,
+    /// One value for each row. NaN for an empty cell.
     values: Vec<f64>,
-    /// Words in order of appearance; a cell's value is the word's number, counted from 1.
+    /// The distinct words in order of appearance. The value of a cell is the number of its word, counted from 1.
     words: IndexMap<String, ()>,
+    /// True if a number was read. Words after numbers are faults.
     numbers: bool,
 }
 
+/// The state of reading the rows of a file.
 struct RecordingReader {
+    /// The file.
     file: FileId,
+    /// The index of the time column.
     time: usize,
+    /// The number of columns.
     width: usize,
+    /// True unless the file is read as a result.
     strict: bool,
-    /// Whether rows may have equal times all the same.
+    /// True if rows may have equal times although `strict` is true.
     jumps: bool,
+    /// True if numbers may have a decimal comma.
     decimal_comma: bool,
+    /// The time of each row, in the file's unit.
     times: Vec<f64>,
+    /// The place of each time, for messages about gaps. Empty unless `strict`.
     time_places: Vec<Range<usize>>,
+    /// The columns that are read.
     columns: Vec<ColumnBuilder>,
+    /// The faults by kind and column, in the order in which they were found.
     faults: IndexMap<(CellFault, usize), FaultRecord>,
 }
 
 impl RecordingReader {
+    /// A reader for the columns `wanted`.
     fn new(
         file: FileId,
         time: usize,
@@ -327,6 +378,7 @@ impl RecordingReader {
         }
     }
 
+    /// Records a fault. Only the first of a kind and column keeps its place.
     fn fault(&mut self, fault: CellFault, column: usize, place: &Range<usize>, text: impl Into<String>) {
         let found = self.faults.entry((fault, column)).or_insert_with(|| FaultRecord {
             place: place.clone(),
@@ -336,7 +388,9 @@ impl RecordingReader {
         found.count += 1;
     }
 
+    /// Takes a row of cells.
     fn row(&mut self, cells: &[TextCell<'_>], names: &[String]) {
+        // Some programs end each row with a delimiter, which makes an empty cell.
         let surplus = cells.len() == self.width + 1 && cells[self.width].text.is_empty();
         if cells.len() != self.width && !surplus {
             let place = cells[0].place.start..cells[cells.len() - 1].place.end;
@@ -353,6 +407,7 @@ impl RecordingReader {
         }
     }
 
+    /// Takes the time of a row. False if it is no number; the row is then skipped.
     fn take_time(&mut self, cell: &TextCell<'_>) -> bool {
         let Some(time) = number::parse(&cell.text, self.decimal_comma).filter(|t| t.is_finite()) else {
             self.fault(CellFault::NoTime, 0, &cell.place, cell.text.as_ref());
@@ -373,8 +428,10 @@ impl RecordingReader {
         true
     }
 
+    /// Takes a cell of column `i`.
     fn cell(&mut self, i: usize, cell: &TextCell<'_>, name: &str) {
         let column = &mut self.columns[i];
+        // In recordings the words `true` and `false` are numbers; in results they make a Boolean column.
         let value = number::parse(&cell.text, self.decimal_comma).or_else(|| self.strict.then(|| truth(&cell.text))?);
         let (index, complete) = (column.index, column.complete);
         match value {
@@ -391,6 +448,7 @@ impl RecordingReader {
                     self.fault(CellFault::Empty, index, &cell.place, name);
                 }
             }
+            // The first cell decides whether a column of a result holds words.
             None if !self.strict && !column.numbers => {
                 let number = column.words.insert_full(cell.text.to_string(), ()).0 + 1;
                 column.values.push(number as f64);
@@ -402,9 +460,10 @@ impl RecordingReader {
         }
     }
 
-    /// Holes in a regular recording: a step much longer than the usual one.
+    /// Records gaps in a recording with regular steps: a step of more than five times the usual one.
     fn look_for_gaps(&mut self) {
         let mut steps: Vec<f64> = self.times.windows(2).map(|w| w[1] - w[0]).collect();
+        // With few rows no step is usual.
         if steps.len() < 10 {
             return;
         }
@@ -412,6 +471,7 @@ impl RecordingReader {
         steps.sort_by(f64::total_cmp);
         let usual = steps[steps.len() / 2];
         let regular = steps.iter().filter(|&&s| (s - usual).abs() <= 0.2 * usual).count();
+        // Nine steps of ten must be near the median, or the recording is not regular.
         if usual <= 0.0 || regular * 10 < steps.len() * 9 {
             return;
         }
@@ -428,8 +488,10 @@ impl RecordingReader {
         }
     }
 
+    /// The trajectory, or the faults.
     fn finish(mut self, head: &HeaderRow, wanted: &[ColumnRequest]) -> StageResult<Trajectory> {
         if self.strict && self.faults.is_empty() {
+            // A row that was skipped would look like a gap.
             self.look_for_gaps();
         }
         let mut diagnostics: Vec<Diagnostic> = self
@@ -457,8 +519,10 @@ impl RecordingReader {
         StageResult::new(trajectory, doubt.into_iter().collect())
     }
 
-    /// A warning where times without a unit, which are read as seconds, look like counted milliseconds: equal steps of
-    /// one or more over a thousand and more. Steps of whole minutes are how slow rigs are sampled.
+    /// A warning if times without a unit, which are read as seconds, look like counted milliseconds.
+    /// They do if the steps are equal and at least 1, over 1000 or more. Steps of whole minutes are excluded, because
+    /// slow
+    /// test benches are sampled so.
     fn doubt_seconds(&self, head: &HeaderRow) -> Option<Diagnostic> {
         let name = &head.names[self.time];
         let says_seconds = name.to_ascii_lowercase().ends_with("_s");
@@ -495,7 +559,7 @@ impl RecordingReader {
     }
 }
 
-/// Times in another unit become seconds; a unit that is none of time is taken as a remark.
+/// Converts times to s. A unit that is none of time is taken for a remark, and the times stay.
 fn in_seconds(times: &mut [f64], unit: &str) {
     if let (Ok(unit), Ok(second)) = (MeasurementUnit::parse(unit), MeasurementUnit::parse("s"))
         && !unit.dimension.is_none()
@@ -504,7 +568,7 @@ fn in_seconds(times: &mut [f64], unit: &str) {
     }
 }
 
-/// The value of a Boolean word.
+/// The value of a Boolean word, in upper or lower case. `None` if it is none.
 fn truth(word: &str) -> Option<f64> {
     match word.to_ascii_lowercase().as_str() {
         "true" => Some(1.0),
@@ -513,7 +577,7 @@ fn truth(word: &str) -> Option<f64> {
     }
 }
 
-/// Columns of words are Booleans or enumerations.
+/// The type and values of a column. One with words is a Boolean if all of them are, else an enumeration.
 fn typed(mut column: ColumnBuilder) -> (Kind, Vec<f64>) {
     if column.words.is_empty() {
         return (Kind::Real, column.values);
@@ -530,6 +594,7 @@ fn typed(mut column: ColumnBuilder) -> (Kind, Vec<f64>) {
     }
 }
 
+/// The diagnostic about a fault, with its help.
 fn describe(file: FileId, fault: CellFault, column: &str, found: &FaultRecord) -> Diagnostic {
     let text = &found.text;
     let (message, label, help) = match fault {

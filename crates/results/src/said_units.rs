@@ -1,13 +1,13 @@
-//! The unit of a column where the file says one and its reader another.
+//! Checks the unit of a column against the unit that the reader states, for example a study.
 
 use super::recording::unit_place;
 use bramah_expr::units::MeasurementUnit;
 use bramah_syntax::diag::{Code, Diagnostic, FileId, Sources};
 
-/// An error where the file gives a column a unit that is not `said`, which the reader gives it; it shows the file's
-/// place, and the caller adds its own.
+/// An error if the file gives a column another unit than `said`, the one that the reader states.
+/// It points to the place in the file; the caller adds the place of its own statement.
 ///
-/// Two spellings of one unit agree. What cannot be read as a unit says nothing.
+/// Two notations of one unit agree. `None` also if one of them cannot be read as a unit.
 pub fn contradiction(sources: &Sources, file: FileId, column: &str, said: &str) -> Option<Diagnostic> {
     let (own, place) = unit_place(sources, file, column)?;
     let (a, b) = (MeasurementUnit::parse(&own).ok()?, MeasurementUnit::parse(said).ok()?);
@@ -18,15 +18,15 @@ pub fn contradiction(sources: &Sources, file: FileId, column: &str, said: &str) 
     Some(Diagnostic::new(Code::UnitsDiffer, message).at(place, "the file's own unit"))
 }
 
-/// True where both give a value the same meaning.
+/// True if both units give a value the same meaning.
 fn agree(own: &MeasurementUnit, said: &MeasurementUnit) -> bool {
     let near = |a: f64, b: f64| (a - b).abs() <= 1e-9 * b.abs();
     if *own == MeasurementUnit::ONE && !said.dimension.is_none() {
-        // loggers put `1` where they know no unit
+        // Data loggers write `1` if they know no unit.
         return true;
     }
     let same = near(own.factor(), said.factor()) && own.offset == said.offset;
-    // `1/min` of a speed counts revolutions
+    // `1/min` for a speed counts revolutions.
     let turns = own.angle == 0 && said.angle != 0 && near(said.factor(), std::f64::consts::TAU * own.factor());
     own.dimension == said.dimension && (same || turns)
 }

@@ -1,4 +1,7 @@
-//! Tables of numbers in files: CSV, and the text format of Modelica's tables (`#1`, then `double name(rows, columns)`).
+//! Reads tables of numbers from files: CSV, and the text format of the Modelica Standard Library's tables (`#1`, then
+//! `double name(rows, columns)`). Text enters, a [`TableMatrix`] leaves. The crate `model` calls [`read_table`] for
+//! tables
+//! in files.
 
 use std::ops::Range;
 
@@ -6,37 +9,37 @@ use super::cells::{CellRows, TextCell};
 use super::number;
 use bramah_syntax::diag::{Code, Diagnostic, FileId, SourceText, Sources, Span};
 
-/// What parts numbers in the text format.
+/// The characters between numbers in the text format.
 const PARTS: [char; 5] = [' ', '\t', ',', ';', '\r'];
 
-/// A matrix that knows where in its file each number stands.
+/// A matrix that knows the place of each number in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableMatrix {
-    /// The file.
+    /// The file it was read from.
     pub file: FileId,
-    /// Number of rows, at least 1.
+    /// The number of rows, at least 1.
     pub rows: usize,
-    /// Number of columns, at least 1.
+    /// The number of columns, at least 1.
     pub columns: usize,
-    /// The numbers row by row, all finite.
+    /// The numbers row by row, all of them finite.
     pub values: Vec<f64>,
-    /// The bytes of each.
+    /// The bytes of each number in the file.
     places: Vec<Range<usize>>,
 }
 
-/// Which numbers of a table are abscissae, and how they must follow each other.
+/// The numbers of a table that are abscissae, and how they must be ordered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TableAxes {
-    /// The first column does not decrease: times, of which two equal ones make a jump.
+    /// The first column must not decrease: times, of which two equal ones are a jump.
     Times,
-    /// The first column increases.
+    /// The first column must increase.
     Column,
-    /// The first column from the second row on, and the first row from the second column on, increase.
+    /// The first column from the second row on, and the first row from the second column on, must increase.
     Grid,
 }
 
 impl TableAxes {
-    /// By the number that stands for it in the library: 0, 1 and 2 in the order of the variants.
+    /// The kind with this number in the library: 0, 1 and 2 in the order of the variants. `None` for other numbers.
     pub fn from_number(number: f64) -> Option<TableAxes> {
         [TableAxes::Times, TableAxes::Column, TableAxes::Grid]
             .into_iter()
@@ -45,18 +48,20 @@ impl TableAxes {
             .map(|a| a.0)
     }
 
-    /// The smallest table of use.
+    /// The smallest number of rows and columns that is useful.
     fn least(self) -> (usize, usize) {
         if self == TableAxes::Grid { (3, 3) } else { (2, 2) }
     }
 }
 
-/// Reads a table from a file that was added to `sources`. A CSV file holds one table, whatever its name; a row of
-/// column names above it is passed over, and the corner of a map may be a word or empty. In the text format an empty
-/// `name` means the first table.
+/// Reads a table from a file whose text was added to `sources`.
+///
+/// A CSV file holds one table, whatever its name. A row of column names is skipped, and the corner of a map may be a
+/// word
+/// or empty. In the text format an empty `name` means the first table.
 ///
 /// # Errors
-/// [`Code::BadData`] with the place: no table of this name, no number, rows of different length.
+/// [`Code::BadData`] with the place: no table of this name, a cell without a number, rows of different length.
 pub fn read_table(sources: &Sources, file: FileId, name: &str) -> Result<TableMatrix, Box<Diagnostic>> {
     let source = sources.get(file);
     let text = source.text.strip_prefix('\u{feff}').unwrap_or(&source.text);
@@ -66,23 +71,26 @@ pub fn read_table(sources: &Sources, file: FileId, name: &str) -> Result<TableMa
     read_csv_table(file, source)
 }
 
+/// A diagnostic at some bytes of the file.
 fn wrong(file: FileId, place: &Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Box<Diagnostic> {
     let byte = |at: usize| u32::try_from(at).unwrap_or(u32::MAX);
     let span = Span { file, start: byte(place.start), end: byte(place.end) };
     Box::new(Diagnostic::new(Code::BadData, message).at(span, label))
 }
 
-/// `no number` at a place.
+/// The error that a cell is empty or no number.
 fn no_number(file: FileId, place: &Range<usize>, word: &str) -> Box<Diagnostic> {
     let message =
         if word.is_empty() { "a cell of the table is empty".into() } else { format!("`{word}` is no number") };
     wrong(file, place, message, "a number is needed here")
 }
 
+/// A finite number from a cell. `None` if it is none.
 fn finite(word: &str, decimal_comma: bool) -> Option<f64> {
     number::parse(word, decimal_comma).filter(|value| value.is_finite())
 }
 
+/// Reads a CSV file as a table.
 fn read_csv_table(file: FileId, source: &SourceText) -> Result<TableMatrix, Box<Diagnostic>> {
     let mut rows = CellRows::new(&source.text);
     let comma = rows.decimal_comma();
@@ -90,6 +98,7 @@ fn read_csv_table(file: FileId, source: &SourceText) -> Result<TableMatrix, Box<
     let mut cells: Vec<TextCell<'_>> = Vec::new();
     let mut first = true;
     while rows.next_row(&mut cells) {
+        // A first row with words in all columns but the first, and no number there, is one of column names.
         let words = std::mem::take(&mut first).then(|| {
             cells.iter().skip(1).all(|c| finite(&c.text, comma).is_none()) && !is_number(cells.first(), comma)
         });
@@ -104,7 +113,7 @@ fn read_csv_table(file: FileId, source: &SourceText) -> Result<TableMatrix, Box<
             return Err(wrong(file, &place, message, "this row"));
         }
         for (j, cell) in cells.iter().enumerate() {
-            // the corner of a map says nothing
+            // The corner of a map has no meaning; a number is stored to keep the matrix complete.
             let corner = matrix.rows == 0 && j == 0 && cells.len() > 2;
             let value = finite(&cell.text, comma).or(corner.then_some(0.0));
             matrix.values.push(value.ok_or_else(|| no_number(file, &cell.place, &cell.text))?);
@@ -118,26 +127,35 @@ fn read_csv_table(file: FileId, source: &SourceText) -> Result<TableMatrix, Box<
     }
 }
 
+/// True if a cell exists and is a number.
 fn is_number(cell: Option<&TextCell<'_>>, decimal_comma: bool) -> bool {
     cell.is_some_and(|c| finite(&c.text, decimal_comma).is_some())
 }
 
-/// A file in the text format, read from a place on.
+/// A file in the text format, while it is read.
 struct TextTableScanner<'a> {
+    /// The file.
     file: FileId,
+    /// Its path and text.
     source: &'a SourceText,
+    /// The byte to be read next.
     at: usize,
 }
 
-/// `double name(rows, columns)`.
+/// The head of a table: `double name(rows, columns)`.
 struct MatrixHeader<'a> {
+    /// The name of the table.
     name: &'a str,
+    /// The number of rows, at least 1.
     rows: usize,
+    /// The number of columns, at least 1.
     columns: usize,
+    /// The place of the head.
     place: Range<usize>,
 }
 
 impl<'a> TextTableScanner<'a> {
+    /// Finds the table of a name and reads it. The error lists the names of the tables that there are.
     fn table(mut self, name: &str) -> Result<TableMatrix, Box<Diagnostic>> {
         let start = self.at;
         let mut known = Vec::new();
@@ -161,7 +179,7 @@ impl<'a> TextTableScanner<'a> {
         Err(Box::new(diagnostic))
     }
 
-    /// The next line without its remark, and its place.
+    /// The next line without its comment, and its place. `None` at the end of the text.
     fn line(&mut self) -> Option<(&'a str, Range<usize>)> {
         let whole = self.source.text[self.at..].split_inclusive('\n').next()?;
         let line = whole.split('#').next().unwrap_or("").trim_end();
@@ -170,6 +188,7 @@ impl<'a> TextTableScanner<'a> {
         Some((line, place))
     }
 
+    /// The head that a line is. `Ok(None)` if it is another line; the error is about a head that cannot be read.
     fn head(&self, line: &'a str, place: &Range<usize>) -> Result<Option<MatrixHeader<'a>>, Box<Diagnostic>> {
         let line = line.trim_start();
         let Some(rest) = line.strip_prefix("double").or_else(|| line.strip_prefix("float")) else { return Ok(None) };
@@ -179,6 +198,7 @@ impl<'a> TextTableScanner<'a> {
             Some((name, rows.trim().parse().ok()?, columns.trim().parse().ok()?))
         });
         match sizes {
+            // The product must not overflow; no memory is reserved for it before numbers are read.
             Some((name, rows, columns)) if rows > 0 && columns > 0 && rows <= usize::MAX / columns => {
                 Ok(Some(MatrixHeader { name, rows, columns, place: place.clone() }))
             }
@@ -191,7 +211,7 @@ impl<'a> TextTableScanner<'a> {
         }
     }
 
-    /// The numbers below a head, in rows of any form.
+    /// Reads the numbers below a head. Line breaks between them have no meaning.
     fn numbers(mut self, head: &MatrixHeader<'a>) -> Result<TableMatrix, Box<Diagnostic>> {
         let count = head.rows * head.columns;
         let mut matrix = TableMatrix {
@@ -203,6 +223,7 @@ impl<'a> TextTableScanner<'a> {
         };
         while matrix.values.len() < count {
             let Some((line, place)) = self.line() else { break };
+            // The next table begins, and this one has too few numbers.
             if self.head(line, &place).is_ok_and(|head| head.is_some()) {
                 break;
             }
@@ -232,10 +253,10 @@ impl<'a> TextTableScanner<'a> {
 }
 
 impl TableMatrix {
-    /// Whether the table is large enough and its abscissae follow each other as they must.
+    /// Checks that the table is large enough, and that its abscissae are ordered as required.
     ///
     /// # Errors
-    /// [`Code::BadData`] at the number that does not.
+    /// [`Code::BadData`] at the first number out of order.
     pub fn check(&self, axes: TableAxes) -> Result<(), Box<Diagnostic>> {
         let (rows, columns) = axes.least();
         if self.rows < rows || self.columns < columns {
@@ -247,6 +268,7 @@ impl TableMatrix {
         if axes == TableAxes::Grid { self.follow(1..self.columns, axes) } else { Ok(()) }
     }
 
+    /// Checks the order of the abscissae at some indices of `values`.
     fn follow(&self, axis: impl Iterator<Item = usize>, axes: TableAxes) -> Result<(), Box<Diagnostic>> {
         let mut before: Option<f64> = None;
         for i in axis {

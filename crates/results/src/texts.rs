@@ -1,29 +1,37 @@
-//! Texts of numbers, remembered: rows repeat values, for most variables are equal to others up to the sign, and many
-//! stand still. Making the fewest digits costs several times a look into this table.
+//! A cache of numbers as text, for writing many rows.
+//! Rows repeat values: many variables are equal to others up to the sign, and many do not change. Finding the fewest
+//! digits of a number takes several times as long as a look into the cache.
 
 use super::number;
 
-/// Entries; a power of two.
+/// The number of entries. A power of two, so that the remainder is a mask.
 const ENTRIES: usize = 1024;
-/// The longest text of a number without its sign.
+/// The largest length in bytes of a number without its sign.
 const LONGEST: usize = 23;
 
+/// One number and its text.
 #[derive(Clone, Copy, Debug)]
 struct TextCacheEntry {
+    /// The bits of the number without its sign.
     bits: u64,
+    /// The length of the text in bytes.
     len: u8,
+    /// The text, followed by unused bytes.
     text: [u8; LONGEST],
 }
 
-/// The last texts of numbers, found by their bits.
+/// A direct-mapped cache: each number has one place, where it replaces what was there.
 #[derive(Clone)]
 pub struct NumberTextCache {
+    /// One entry for each place.
     entries: Vec<TextCacheEntry>,
+    /// The buffer in which digits are made.
     digits: ryu::Buffer,
 }
 
 impl Default for NumberTextCache {
     fn default() -> Self {
+        // NaN is never looked up, so these entries match nothing.
         let nothing = TextCacheEntry { bits: f64::NAN.to_bits(), len: 0, text: [0; LONGEST] };
         NumberTextCache { entries: vec![nothing; ENTRIES], digits: ryu::Buffer::new() }
     }
@@ -36,7 +44,7 @@ impl std::fmt::Debug for NumberTextCache {
 }
 
 impl NumberTextCache {
-    /// Appends what [`super::number::push`] appends.
+    /// Appends the same text as [`super::number::push`].
     pub fn push(&mut self, out: &mut Vec<u8>, value: f64) {
         if value.is_nan() {
             return;
@@ -44,10 +52,12 @@ impl NumberTextCache {
         if value == 0.0 {
             return out.push(b'0');
         }
+        // The sign is written apart, so that a number and its negative share an entry.
         if value.is_sign_negative() {
             out.push(b'-');
         }
         let bits = value.abs().to_bits();
+        // A multiplicative hash. Its high bits depend on all bits of the number.
         let place = (bits.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 54) as usize % ENTRIES;
         let entry = &mut self.entries[place];
         if entry.bits != bits {

@@ -1,6 +1,6 @@
-//! The one type for recorded signals, from a run or from a bench.
+//! Signals over time, from a run or from a test bench. All readers make this type, and all writers take it.
 
-/// The type of a signal's values. All are stored as `f64`: Booleans as 0 and 1, enumerations counted from 1.
+/// The type of a signal's values. All are stored as `f64`: Booleans as 0 and 1, enumeration literals counted from 1.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
     /// A continuous number.
@@ -8,41 +8,41 @@ pub enum Kind {
     Real,
     /// A whole number.
     Integer,
-    /// `false` and `true`.
+    /// 0 for `false`, 1 for `true`.
     Boolean,
-    /// One of these literals.
+    /// The literals in order; the first has the value 1.
     Enumeration(Vec<String>),
 }
 
 impl Kind {
-    /// True for signals that stay constant between events: drawn as steps, never interpolated.
+    /// True for signals that are constant between events. They are drawn as steps and never interpolated.
     pub fn is_discrete(&self) -> bool {
         *self != Kind::Real
     }
 }
 
-/// What is known about one column of a [`Trajectory`].
+/// The description of one column of a [`Trajectory`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Signal {
-    /// Full dotted name, as in `pump.b.p` or `v[3].p`.
+    /// The full dotted name, such as `pump.b.p` or `v[3].p`.
     pub name: String,
-    /// The unit of the stored values; empty where nothing is known.
+    /// The unit of the stored values. Empty if it is not known.
     pub unit: String,
-    /// The unit for people, used by printing and plots; empty where it is `unit`.
+    /// The unit for printing and plots. Empty if it is `unit`.
     pub display_unit: String,
-    /// The description string, or empty.
+    /// The description string. Empty if there is none.
     pub description: String,
     /// The type of the values.
     pub kind: Kind,
 }
 
 impl Signal {
-    /// A Real signal without unit.
+    /// A Real signal without a unit.
     pub fn new(name: impl Into<String>) -> Self {
         Signal { name: name.into(), ..Signal::default() }
     }
 
-    /// The same with a unit.
+    /// The signal with this unit.
     #[must_use]
     pub fn unit(mut self, unit: impl Into<String>) -> Self {
         self.unit = unit.into();
@@ -50,25 +50,26 @@ impl Signal {
     }
 }
 
-/// Signals over time. Time never falls; two or more rows of equal time are an event (before and after it).
+/// Signals over time. Times never decrease. Two or more rows of equal time are an event, with the values before and
+/// after.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Trajectory {
-    /// What the columns are; time itself is not among them.
+    /// The signals of the columns. Time is not among them.
     pub signals: Vec<Signal>,
-    /// The times of the rows in seconds.
+    /// The times of the rows (s).
     pub times: Vec<f64>,
-    /// One column a signal, each as long as `times`. An empty cell of a recording is NaN.
+    /// One column for each signal, as long as `times`. An empty cell of a recording is NaN.
     pub columns: Vec<Vec<f64>>,
 }
 
 impl Trajectory {
-    /// An empty trajectory of these signals.
+    /// A trajectory of these signals without rows.
     pub fn new(signals: Vec<Signal>) -> Self {
         let columns = vec![Vec::new(); signals.len()];
         Trajectory { signals, times: Vec::new(), columns }
     }
 
-    /// Appends a row; `values` are in the order of `signals`.
+    /// Appends a row. `values` has one value for each signal, in their order.
     pub fn push(&mut self, time: f64, values: &[f64]) {
         debug_assert_eq!(values.len(), self.columns.len(), "one value a signal");
         self.times.push(time);
@@ -77,7 +78,7 @@ impl Trajectory {
         }
     }
 
-    /// Keeps the rows whose time lies in a window.
+    /// Keeps only the rows whose time lies in the window, ends included.
     pub fn keep(&mut self, window: std::ops::RangeInclusive<f64>) {
         let from = self.times.partition_point(|t| t < window.start());
         let to = self.times.partition_point(|t| t <= window.end()).max(from);
@@ -87,29 +88,31 @@ impl Trajectory {
         }
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub fn len(&self) -> usize {
         self.times.len()
     }
 
-    /// True when there is no row.
+    /// True if there is no row.
     pub fn is_empty(&self) -> bool {
         self.times.is_empty()
     }
 
-    /// The index of the signal of this name.
+    /// The index of the signal with this name. `None` if there is none.
     pub fn index(&self, name: &str) -> Option<usize> {
         self.signals.iter().position(|s| s.name == name)
     }
 
-    /// The values of the signal of this name.
+    /// The values of the signal with this name. `None` if there is none.
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         self.index(name).map(|i| self.columns[i].as_slice())
     }
 
-    /// The value of column `index` at a time: linear between rows for Real signals, held for others; at an event the
-    /// value after it. `None` outside the recorded interval.
+    /// The value of column `index` at a time. At an event it is the value after the event.
+    /// Between rows Real signals are interpolated linearly, and others keep their value.
+    /// `None` outside the recorded interval, or if there is no such column.
     pub fn value(&self, index: usize, time: f64) -> Option<f64> {
+        // All rows of an event have equal times; the last one of them is taken.
         let after = self.times.partition_point(|&t| t <= time);
         let before = after.checked_sub(1)?;
         let column = self.columns.get(index)?;

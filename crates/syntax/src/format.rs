@@ -1,5 +1,5 @@
 //! The formatter: a text in, the same text in the standard layout out.
-//! The command `format` and the editor call [`format`].
+//! The command `bramah fmt` and the editor call [`format`].
 //!
 //! Only indentation, blanks and empty lines change. Tokens, comments and the author's line breaks stay, so the meaning
 //! stays. The layout follows from the tokens alone: [`BlockNesting`] counts levels without a syntax tree.
@@ -11,7 +11,7 @@ use crate::diag::{Diagnostic, FileId};
 /// Blanks of one level of indentation.
 const LEVEL: usize = 2;
 
-/// Lays out a text. The result ends with one line break, and formatting it again changes nothing.
+/// Lays out a text. The result ends with one line break.
 ///
 /// # Errors
 /// The errors of the parser: a text with errors is not changed.

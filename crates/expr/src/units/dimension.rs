@@ -1,16 +1,17 @@
-//! Dimensions: products of powers of the seven base quantities of the SI.
+//! Dimensions of quantities: products of powers of the seven base quantities of the SI.
+//! `unit` computes with them, and the unit check of the crate `model` compares them.
 
-/// Exponents are counted in sixtieths, so that square, cube, fourth, fifth and sixth roots are exact.
+/// The exponent 1. Exponents are counted in sixtieths, so that second to sixth roots are exact.
 pub(super) const WHOLE: i16 = 60;
 
-/// The base units, in the order in which they are printed.
+/// The base units, in the order in which exponents are stored and printed.
 const BASE: [&str; 7] = ["kg", "m", "s", "A", "K", "mol", "cd"];
 
-/// Exponents of kilogram, metre, second, ampere, kelvin, mole and candela.
+/// A dimension: exponents of kilogram, metre, second, ampere, kelvin, mole and candela, in sixtieths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Dimension([i16; 7]);
 
-/// Derived units worth naming in messages: exponents of kg, m, s, A, K.
+/// Derived units by which messages name a dimension: exponents of kg, m, s, A, K. The first that fits is taken.
 const NAMED: [(&str, [i16; 5]); 16] = [
     ("N", [1, 1, -2, 0, 0]),
     ("Pa", [1, -1, -2, 0, 0]),
@@ -31,14 +32,15 @@ const NAMED: [(&str, [i16; 5]); 16] = [
 ];
 
 impl Dimension {
-    /// No dimension.
+    /// The dimension of a pure number.
     pub const NONE: Dimension = Dimension([0; 7]);
-    /// Of time.
+    /// The dimension of time.
     pub const TIME: Dimension = Dimension::new([0, 0, 1, 0, 0, 0, 0]);
 
-    /// From whole exponents of kg, m, s, A, K, mol, cd.
+    /// A dimension from integer exponents of kg, m, s, A, K, mol, cd.
     pub const fn new(exponents: [i16; 7]) -> Self {
         let mut sixtieths = [0; 7];
+        // A loop by hand, since iterators do not work in a `const fn`.
         let mut i = 0;
         while i < 7 {
             sixtieths[i] = exponents[i] * WHOLE;
@@ -47,27 +49,27 @@ impl Dimension {
         Dimension(sixtieths)
     }
 
-    /// Exponents of kg, m, s, A, K, mol, cd; `None` where one is not whole.
+    /// The exponents of kg, m, s, A, K, mol, cd. `None` if one is not an integer.
     pub fn whole(self) -> Option<[i16; 7]> {
         self.0.iter().all(|e| e % WHOLE == 0).then(|| self.0.map(|e| e / WHOLE))
     }
 
-    /// True when all exponents are 0.
+    /// True for the dimension of a pure number.
     pub fn is_none(self) -> bool {
         self == Self::NONE
     }
 
-    /// The dimension of a product; `None` when an exponent grows beyond all sense.
+    /// The dimension of a product. `None` if an exponent overflows.
     pub fn times(self, other: Dimension) -> Option<Dimension> {
         self.each(other, i16::checked_add)
     }
 
-    /// The dimension of a quotient.
+    /// The dimension of a quotient. `None` if an exponent overflows.
     pub fn over(self, other: Dimension) -> Option<Dimension> {
         self.each(other, i16::checked_sub)
     }
 
-    /// The dimension of a power; `None` when an exponent is not a multiple of 1/60.
+    /// The dimension of a power. `None` if an exponent is no multiple of 1/60, or overflows.
     pub fn power(self, exponent: f64) -> Option<Dimension> {
         let mut result = [0; 7];
         for (to, from) in result.iter_mut().zip(self.0) {
@@ -76,6 +78,7 @@ impl Dimension {
         Some(Dimension(result))
     }
 
+    /// Combines the exponents of two dimensions.
     fn each(self, other: Dimension, op: impl Fn(i16, i16) -> Option<i16>) -> Option<Dimension> {
         let mut result = [0; 7];
         for (to, (a, b)) in result.iter_mut().zip(self.0.into_iter().zip(other.0)) {
@@ -85,16 +88,17 @@ impl Dimension {
     }
 }
 
-/// An exponent in sixtieths, multiplied.
+/// An exponent in sixtieths, multiplied. `None` if the product is no whole number of sixtieths, or overflows.
 pub fn power_of(sixtieths: i16, exponent: f64) -> Option<i16> {
     let product = f64::from(sixtieths) * exponent;
     let whole = product.round();
+    // A third is not exact in binary, so the product may miss a whole number slightly.
     let fits = (product - whole).abs() < 1e-9 && whole.abs() <= f64::from(i16::MAX);
     #[allow(clippy::cast_possible_truncation, reason = "a whole number in the range of i16")]
     fits.then_some(whole as i16)
 }
 
-/// In coherent SI units, such as `Pa`, `m3/s` or `kg/(m.s)`.
+/// Prints the dimension in coherent SI units, such as `Pa`, `m3/s` or `kg/(m.s)`.
 impl std::fmt::Display for Dimension {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let named = NAMED.iter().find(|(_, e)| *self == Dimension::new([e[0], e[1], e[2], e[3], e[4], 0, 0]));
@@ -106,6 +110,7 @@ impl std::fmt::Display for Dimension {
 }
 
 impl Dimension {
+    /// The dimension as a quotient of products of base units.
     fn in_base_units(self) -> String {
         let above: Vec<String> = self.factors(|e| e > 0).collect();
         let below: Vec<String> = self.factors(|e| e < 0).collect();
@@ -117,11 +122,13 @@ impl Dimension {
         }
     }
 
+    /// The base units whose exponents are `wanted`, each with the magnitude of its exponent.
     fn factors(self, wanted: impl Fn(i16) -> bool) -> impl Iterator<Item = String> {
         let pairs = BASE.iter().zip(self.0).filter(move |&(_, exponent)| wanted(exponent));
         pairs.map(|(name, exponent)| match exponent.abs() {
             WHOLE => (*name).to_string(),
             e if e % WHOLE == 0 => format!("{name}{}", e / WHOLE),
+            // Fractions have a `^`, so that the point in them is not read as a product.
             e => format!("{name}^{}", crate::print::number(f64::from(e) / f64::from(WHOLE), Some(4))),
         })
     }

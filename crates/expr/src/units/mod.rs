@@ -1,4 +1,5 @@
-//! Units of measurement: reading unit strings and converting values.
+//! Units of measurement: reads unit strings, converts values between units, and compares dimensions.
+//! Models have units in the notation of Modelica (3.6, chapter 19), recordings and studies in that of engineers.
 
 mod dimension;
 mod symbols;

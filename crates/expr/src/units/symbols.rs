@@ -1,19 +1,26 @@
-//! The unit symbols that are known, with their prefixes.
+//! The unit symbols that are known, with their prefixes: SI units, common engineering units and labels of sensors.
+//! `unit` looks up the symbols of a unit string here.
 
 use super::Dimension;
 
-/// What one symbol means: `num*10^decade/den` coherent SI units, `offset` added.
+/// The meaning of a symbol: a value x in it is `x*num*10^decade/den + offset` in coherent SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UnitSymbol {
+    /// The dimension. That of an angle is 1.
     pub dimension: Dimension,
-    /// Whether it is an angle: 1 or 0.
+    /// The exponent of the angle: 1 for angles, else 0.
     pub angle: i16,
+    /// The numerator of the factor.
     pub num: f64,
+    /// The denominator of the factor.
     pub den: f64,
+    /// The power of ten of the factor, kept apart so that decimal multiples convert exactly.
     pub decade: i32,
+    /// The SI value of the unit's zero (K), for temperatures.
     pub offset: f64,
 }
 
+/// The SI prefixes with their powers of ten. `da` comes before `d`, because the first prefix that fits is tried first.
 const PREFIXES: [(&str, i32); 22] = [
     ("da", 1),
     ("Y", 24),
@@ -39,22 +46,27 @@ const PREFIXES: [(&str, i32); 22] = [
     ("y", -24),
 ];
 
+/// A coherent SI unit.
 const fn si(dimension: [i16; 7]) -> UnitSymbol {
     UnitSymbol { dimension: Dimension::new(dimension), angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 }
 }
 
+/// A decimal multiple of a coherent SI unit.
 const fn decimal(decade: i32, dimension: [i16; 7]) -> UnitSymbol {
     UnitSymbol { decade, ..si(dimension) }
 }
 
+/// `num/den` coherent SI units.
 const fn scaled(num: f64, den: f64, dimension: [i16; 7]) -> UnitSymbol {
     UnitSymbol { num, den, ..si(dimension) }
 }
 
+/// An angle of `num/den` rad.
 const fn angle(num: f64, den: f64) -> UnitSymbol {
     UnitSymbol { num, den, angle: 1, ..si(ONE) }
 }
 
+/// Exponents of kg, m, s, A, K, mol, cd.
 const ONE: [i16; 7] = [0; 7];
 const MASS: [i16; 7] = [1, 0, 0, 0, 0, 0, 0];
 const LENGTH: [i16; 7] = [0, 1, 0, 0, 0, 0, 0];
@@ -68,10 +80,12 @@ const PRESSURE: [i16; 7] = [1, -1, -2, 0, 0, 0, 0];
 const ENERGY: [i16; 7] = [1, 2, -2, 0, 0, 0, 0];
 const POWER: [i16; 7] = [1, 2, -3, 0, 0, 0, 0];
 const RESISTANCE: [i16; 7] = [1, 2, -3, -2, 0, 0, 0];
+/// The angle of one revolution (rad).
 const TURN: f64 = std::f64::consts::TAU;
+/// The angle of half a revolution (rad).
 const HALF_TURN: f64 = std::f64::consts::PI;
 
-/// A symbol that takes prefixes.
+/// A symbol that may have a prefix.
 fn prefixable(name: &str) -> Option<UnitSymbol> {
     Some(match name {
         "m" => si(LENGTH),
@@ -85,7 +99,7 @@ fn prefixable(name: &str) -> Option<UnitSymbol> {
         "sr" => si(ONE),
         "Hz" | "Bq" => si(FREQUENCY),
         "N" => si(FORCE),
-        // as torque sensors are labelled; Modelica writes N.m
+        // The label of torque sensors; Modelica writes `N.m`.
         "Nm" => si(ENERGY),
         "Pa" => si(PRESSURE),
         "J" => si(ENERGY),
@@ -113,7 +127,7 @@ fn prefixable(name: &str) -> Option<UnitSymbol> {
     })
 }
 
-/// A symbol that stands alone.
+/// A symbol that has no prefix. It takes precedence, so that `min` is a minute and not a milli-inch.
 fn plain(name: &str) -> Option<UnitSymbol> {
     Some(match name {
         "1" => si(ONE),
@@ -134,7 +148,7 @@ fn plain(name: &str) -> Option<UnitSymbol> {
         "psi" => scaled(6_894.757_293_168, 1.0, PRESSURE),
         "cc" => decimal(-6, VOLUME),
         "lpm" => UnitSymbol { den: 60.0, ..decimal(-3, FLOW) },
-        // US gallons
+        // The US gallon.
         "gpm" => UnitSymbol { num: 3_785_411_784.0, den: 60.0, ..decimal(-12, FLOW) },
         "mmHg" => scaled(133.322_387_415, 1.0, PRESSURE),
         "kgf" => scaled(9.80665, 1.0, FORCE),
@@ -149,11 +163,12 @@ fn plain(name: &str) -> Option<UnitSymbol> {
     })
 }
 
-/// What a symbol means, with a prefix or without.
+/// The meaning of a symbol, with or without a prefix. `None` if it is not known.
 pub(super) fn lookup(name: &str) -> Option<UnitSymbol> {
     plain(name).or_else(|| prefixable(name)).or_else(|| prefixed(name))
 }
 
+/// The meaning of a symbol with a prefix.
 fn prefixed(name: &str) -> Option<UnitSymbol> {
     PREFIXES.iter().find_map(|(prefix, decade)| {
         let symbol = prefixable(name.strip_prefix(prefix)?)?;

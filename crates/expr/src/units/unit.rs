@@ -1,67 +1,75 @@
-//! Unit strings as Modelica writes them, and values in them.
+//! Unit strings in the notation of Modelica (3.6, chapter 19), and conversions between units.
 //!
-//! `unit = factor {("." | "*") factor} {"/" factor}`, where a factor is a symbol with an optional whole exponent (`m2`,
-//! `s-1`, `m^2`), `1`, or a unit in brackets. After a `/` only one factor may follow before the next `/`: `J/kg.K` is
-//! refused, as in Modelica, because it can be read in two ways.
+//! The grammar is `unit = factor {("." | "*") factor} {"/" factor}`. A factor is `1`, a unit in brackets, or a symbol
+//! with
+//! an optional exponent (`m2`, `s-1`, `m^2`). No product may follow a `/`: `J/kg.K` is refused, as in Modelica, because
+//! it
+//! can be read in two ways.
 
 use super::dimension::{Dimension, WHOLE, power_of};
 use super::symbols::{self, UnitSymbol};
 
-/// A unit of measurement. A value `x` in it is `x*factor + offset` in coherent SI units.
+/// A unit of measurement. A value x in it is `x*factor + offset` in coherent SI units.
 ///
-/// The factor is kept as `num*10^decade/den`, so that converting `0.8 ml` to m3 gives the number nearest to 8e-7.
+/// The factor is stored as `num*10^decade/den`, so that 0.8 ml in m3 is the number nearest to 8e-7.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeasurementUnit {
-    /// The dimension. An angle has none.
+    /// The dimension. That of an angle is 1.
     pub dimension: Dimension,
-    /// The exponent of the angle in sixtieths, which [`Dimension`] leaves out: 60 for `rad/s`, 0 for `1/s`.
+    /// The exponent of the angle in sixtieths, which [`Dimension`] ignores: 60 for `rad/s`, 0 for `1/s`.
     pub angle: i16,
+    /// The numerator of the factor.
     num: f64,
+    /// The denominator of the factor.
     den: f64,
+    /// The power of ten of the factor.
     decade: i32,
-    /// What is added after multiplying, in K; only for temperatures such as `degC`.
+    /// The SI value of the unit's zero (K). It is not 0 only for temperatures such as `degC`.
     pub offset: f64,
 }
 
-/// Why a text is not a unit.
+/// The reason why a text is no unit or quantity.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum UnitError {
-    /// A symbol that is not known.
+    /// A symbol is not known.
     #[error("`{part}` in the unit `{unit}` is not known")]
     Unknown {
         /// The unknown symbol.
         part: String,
-        /// The whole unit.
+        /// The complete unit string.
         unit: String,
     },
-    /// The text breaks off, or goes on where it should end.
+    /// The text ends too early, or continues where it should end.
     #[error("the unit `{unit}` cannot be read from `{rest}` on")]
     Form {
         /// The first part that cannot be read.
         rest: String,
-        /// The whole unit.
+        /// The complete unit string.
         unit: String,
     },
-    /// `a/b.c`
+    /// A product follows a quotient: `a/b.c`.
     #[error("the unit `{unit}` can be read in two ways: write `a/(b.c)`, or the product before the `/`")]
     Ambiguous {
-        /// The whole unit.
+        /// The complete unit string.
         unit: String,
     },
-    /// The text before a unit is not a number.
+    /// The text before a unit is no number.
     #[error("`{text}` is not a number")]
     NotNumber {
-        /// The text.
+        /// The text that should be a number.
         text: String,
     },
 }
 
 impl MeasurementUnit {
-    /// The number 1.
+    /// The unit of a pure number.
     pub const ONE: MeasurementUnit =
         MeasurementUnit { dimension: Dimension::NONE, angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 };
 
-    /// Reads a unit string; the empty one is the unit 1.
+    /// Reads a unit string. The empty one is the unit of a pure number.
+    ///
+    /// # Errors
+    /// The text is no unit.
     pub fn parse(text: &str) -> Result<MeasurementUnit, UnitError> {
         if text.trim().is_empty() {
             return Ok(MeasurementUnit::ONE);
@@ -71,51 +79,54 @@ impl MeasurementUnit {
         if parser.rest.is_empty() { Ok(unit) } else { Err(parser.form()) }
     }
 
-    /// How many coherent SI units one of it is.
+    /// The number of coherent SI units that the unit is, without its offset.
     pub fn factor(&self) -> f64 {
         ratio(1.0, self.num, self.den, self.decade)
     }
 
-    /// Exponents of kg, m, s, A, K, mol, cd and rad; `None` where one is not whole.
+    /// The exponents of kg, m, s, A, K, mol, cd and rad. `None` if one is not an integer.
     pub fn exponents(&self) -> Option<[i16; 8]> {
         let [kg, m, s, a, k, mol, cd] = self.dimension.whole()?;
         let angle = (self.angle % WHOLE == 0).then_some(self.angle / WHOLE)?;
         Some([kg, m, s, a, k, mol, cd, angle])
     }
 
-    /// A value in this unit, in coherent SI units.
+    /// A value in this unit, converted to coherent SI units.
     pub fn to_si(&self, value: f64) -> f64 {
         ratio(value, self.num, self.den, self.decade) + self.offset
     }
 
-    /// A value in this unit as a value in another; `None` when the dimensions differ. Where both are decimal multiples of
-    /// one unit the result is the number nearest to the exact one.
+    /// A value in this unit, converted to another one. `None` if the dimensions differ; angles are not compared.
+    /// Between decimal multiples of one unit, the result is the number nearest to the exact one.
     pub fn convert(&self, value: f64, to: &MeasurementUnit) -> Option<f64> {
         let from = self;
         if from.dimension != to.dimension {
             return None;
         }
+        // Equal units keep the value to the bit.
         if from.offset == to.offset && from.factor() == to.factor() {
             return Some(value);
         }
         let (num, den) = (from.num * to.den, from.den * to.num);
         let scaled = ratio(value, num, den, from.decade - to.decade);
         let shift = from.offset - to.offset;
+        // The shift between the zeros is in SI units and has to be converted too.
         Some(if shift == 0.0 { scaled } else { scaled + ratio(shift, to.den, to.num, -to.decade) })
     }
 
-    /// The unit of a value, or of a difference of two: that has no zero point of its own, so that 5 degC are 5 K.
+    /// The unit of a value, or of a difference of two values. A difference has no offset: 5 degC are then 5 K.
     #[must_use]
     pub fn meant(self, difference: bool) -> MeasurementUnit {
         MeasurementUnit { offset: if difference { 0.0 } else { self.offset }, ..self }
     }
 
+    /// The unit of a symbol.
     fn of(symbol: UnitSymbol) -> MeasurementUnit {
         let UnitSymbol { dimension, angle, num, den, decade, offset } = symbol;
         MeasurementUnit { dimension, angle: 60 * angle, num, den, decade, offset }
     }
 
-    /// The product. Offsets vanish: in `W/degC` a degree is a difference.
+    /// The product. The offset is dropped: in `W/degC` a degree is a difference. `None` if an exponent overflows.
     fn times(self, other: MeasurementUnit) -> Option<MeasurementUnit> {
         Some(MeasurementUnit {
             dimension: self.dimension.times(other.dimension)?,
@@ -127,14 +138,17 @@ impl MeasurementUnit {
         })
     }
 
-    /// A power; that of a square root for exponents such as 0.5, as in the flow coefficient `m3/(s.Pa0.5)`.
+    /// A power. Fractional exponents occur in flow coefficients, such as `m3/(s.Pa0.5)`. `None` if an exponent
+    /// overflows.
     fn power(self, exponent: f64) -> Option<MeasurementUnit> {
+        // Keeps the offset, which every other power drops.
         if exponent == 1.0 {
             return Some(self);
         }
+        // Exchanged instead of inverted, so that no rounding occurs.
         let (num, den) = if exponent < 0.0 { (self.den, self.num) } else { (self.num, self.den) };
         let decade = f64::from(self.decade) * exponent;
-        // a power of ten that is not whole belongs to the number
+        // The fractional part of the power of ten goes into the number.
         let rest = 10f64.powf(decade.fract());
         let (num, den) = (num.powf(exponent.abs()) * rest, den.powf(exponent.abs()));
         if !num.is_finite() || !den.is_finite() || decade.abs() > f64::from(i16::MAX) {
@@ -151,13 +165,17 @@ impl MeasurementUnit {
     }
 }
 
-/// `value*num*10^decade/den` with one multiplication and one division where the powers of ten are exact.
+/// `value*num*10^decade/den`, by one multiplication and one division where the power of ten is exact.
 fn ratio(value: f64, num: f64, den: f64, decade: i32) -> f64 {
+    // Powers of ten up to 1e22 are exact; 0.001 is not, so a negative power is a division.
     let power = 10f64.powi(decade.abs());
     if decade < 0 { value * num / (den * power) } else { value * (num * power) / den }
 }
 
-/// Reads a number with or without a unit behind it: `5e5`, `210 bar`, `20degC`.
+/// Reads a number with or without a unit: `5e5`, `210 bar`, `20degC`. The unit is `None` if there is none.
+///
+/// # Errors
+/// The text does not begin with a number, or the rest is no unit.
 pub fn quantity(text: &str) -> Result<(f64, Option<MeasurementUnit>), UnitError> {
     let text = text.trim();
     let (number, rest) = text.split_at(number_length(text));
@@ -167,7 +185,7 @@ pub fn quantity(text: &str) -> Result<(f64, Option<MeasurementUnit>), UnitError>
     Ok((value, unit))
 }
 
-/// How many bytes at the beginning are a decimal number.
+/// The number of bytes at the beginning that are a decimal number.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes.iter().skip(from).take_while(|b| b.is_ascii_digit()).count();
@@ -179,6 +197,7 @@ fn number_length(text: &str) -> usize {
     }
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
         let power = end + 1 + sign(end + 1);
+        // Without digits the `e` belongs to the unit.
         if digits(power) > 0 {
             end = power + digits(power);
         }
@@ -186,20 +205,25 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// Brackets may be nested so deep.
+/// The largest nesting of brackets, which bounds the recursion.
 const DEEPEST: u32 = 50;
 
+/// The state of reading a unit string.
 struct UnitParser<'a> {
+    /// The complete string, for messages.
     unit: &'a str,
+    /// The part that is still to be read.
     rest: &'a str,
 }
 
 impl UnitParser<'_> {
+    /// The error that the string cannot be read at this place.
     fn form(&self) -> UnitError {
         let rest = if self.rest.is_empty() { "its end" } else { self.rest };
         UnitError::Form { rest: rest.into(), unit: self.unit.into() }
     }
 
+    /// Skips blanks and a character, if it comes next. False if another one comes.
     fn eat(&mut self, wanted: char) -> bool {
         let found = self.rest.trim_start().strip_prefix(wanted);
         if let Some(rest) = found {
@@ -208,6 +232,7 @@ impl UnitParser<'_> {
         found.is_some()
     }
 
+    /// A unit: factors joined by products and quotients. `depth` is the nesting of brackets.
     fn unit(&mut self, depth: u32) -> Result<MeasurementUnit, UnitError> {
         let mut product = self.factor(depth)?;
         let mut below = false;
@@ -227,6 +252,7 @@ impl UnitParser<'_> {
         }
     }
 
+    /// A factor: a symbol or a unit in brackets, with an optional exponent.
     fn factor(&mut self, depth: u32) -> Result<MeasurementUnit, UnitError> {
         let base = if depth < DEEPEST && self.eat('(') {
             let inner = self.unit(depth + 1)?;
@@ -237,10 +263,12 @@ impl UnitParser<'_> {
         } else {
             self.symbol()?
         };
+        // `1` takes no exponent, so that `10` is no unit.
         let exponent = if base == MeasurementUnit::ONE { 1.0 } else { self.exponent()? };
         base.power(exponent).ok_or_else(|| self.form())
     }
 
+    /// A symbol, up to the first character that cannot belong to one.
     fn symbol(&mut self) -> Result<MeasurementUnit, UnitError> {
         let letter = |c: char| c.is_alphabetic() || matches!(c, '%' | '\u{b0}' | '_');
         let end = self.rest.find(|c| !letter(c)).unwrap_or(self.rest.len());
@@ -254,8 +282,9 @@ impl UnitParser<'_> {
         Ok(MeasurementUnit::of(symbol))
     }
 
-    /// The exponent behind a symbol or `^`: a whole number, or one with a half (`2`, `-1`, `0.5`); 1 where there is none.
+    /// The exponent after a symbol or `^`, an integer or a half (`2`, `-1`, `0.5`). 1 if there is none.
     fn exponent(&mut self) -> Result<f64, UnitError> {
+        // The superscripts for 2 and 3.
         for (symbol, exponent) in [('\u{b2}', 2.0), ('\u{b3}', 3.0)] {
             if let Some(rest) = self.rest.strip_prefix(symbol) {
                 self.rest = rest;
@@ -270,7 +299,7 @@ impl UnitParser<'_> {
             return if raised || sign > 0 { Err(self.form()) } else { Ok(1.0) };
         }
         let end = sign + digits;
-        // a dot is a product unless a 5 follows, which begins no unit
+        // A point is a product, unless a 5 follows, which begins no unit.
         let half =
             self.rest[end..].strip_prefix(".5").is_some_and(|after| !after.starts_with(|c: char| c.is_ascii_digit()));
         let end = if half { end + 2 } else { end };

@@ -1,7 +1,10 @@
-//! C functions of a user: what stands behind `external "C"` of his own library, compiled with a wrapper that takes all
-//! arguments as numbers, and called there (MLS 12.9).
+//! C functions of a user, declared `external "C"` in a Modelica library (Modelica 3.6, section 12.9).
+//! A [`CSignature`] enters; a function for equations leaves ([`bind`]). The crate `model` calls both.
 //!
-//! Such a function counts as pure: same arguments, same results. Its slopes are differences.
+//! The function is compiled together with a generated wrapper, which takes all arguments as an array of `double` and
+//! gives all results in another one.
+//!
+//! Such a function counts as pure: equal arguments give equal results. Its derivatives are central differences.
 
 mod native;
 
@@ -10,21 +13,23 @@ use bramah_syntax::world::CompiledC;
 use std::fmt::Write as _;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// A difference reaches this part of an argument's size to either side: the cube root of the rounding error.
+/// Step of a central difference, as a fraction of the argument's size.
+/// It is the cube root of the machine precision, which balances rounding against truncation.
 const REACH: f64 = 6e-6;
-/// The size of an argument that is near 0.
+/// The smallest size of an argument, so that the step near 0 is not too small.
 const SMALL: f64 = 1e-3;
 
-/// What numbers are in C.
+/// The type of a number in C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CNumberType {
     /// `double`
     Real,
-    /// `int`: integers, truth values, enumerations
+    /// `int`, also for Boolean values and enumerations.
     Integer,
 }
 
 impl CNumberType {
+    /// The name of the type in C.
     fn c(self) -> &'static str {
         match self {
             CNumberType::Real => "double",
@@ -33,45 +38,49 @@ impl CNumberType {
     }
 }
 
-/// An argument of the C function.
+/// An argument of the C function, in the order of its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CArgument {
-    /// A number that is given, or an array of so many.
+    /// A number that is passed in, or an array of so many numbers.
     Input(CNumberType, Option<usize>),
-    /// A number that is found, or an array of so many.
+    /// A number that is passed out, or an array of so many numbers.
     Output(CNumberType, Option<usize>),
-    /// A text that is known before the run.
+    /// A text that is known before the run. It becomes a literal in the wrapper.
     Text(String),
-    /// A number written out.
+    /// A number known before the run. It becomes a literal in the wrapper.
     Number(f64),
-    /// The size of an array.
+    /// The size of an array, as `size_t`. It becomes a literal in the wrapper.
     Size(usize),
 }
 
-/// How a C function is called.
+/// The call of a C function: name, result, arguments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CSignature {
-    /// Its name.
+    /// The name of the function in C.
     pub name: String,
-    /// What it gives back.
+    /// The type of the return value. `None` for `void`.
     pub result: Option<CNumberType>,
-    /// Its arguments.
+    /// The arguments in order.
     pub arguments: Vec<CArgument>,
-    /// Text that declares it, from the `Include` annotation; without any it is declared by these types.
+    /// The text of the `Include` annotation, which declares the function. If empty, the wrapper declares it by these
+    /// types.
     pub include: String,
 }
 
 impl CSignature {
-    /// How many numbers come out: the result, and the outputs among the arguments.
+    /// The number of outputs: the return value, and all numbers of the output arguments.
     pub fn outputs(&self) -> usize {
         let of = |a: &CArgument| if let CArgument::Output(_, n) = a { n.unwrap_or(1) } else { 0 };
         usize::from(self.result.is_some()) + self.arguments.iter().map(of).sum::<usize>()
     }
 
-    /// The C text of a function `bramah_call(in, out)` that calls it.
+    /// The C source of the wrapper, `int bramah_call(const double *in, double *out)`.
+    /// It gives 0, or 1 if the function called `ModelicaError`.
     pub fn wrapper(&self) -> String {
         let (mut before, mut after, mut passed, mut types) = (String::new(), String::new(), Vec::new(), Vec::new());
+        // Positions in `in` and `out`: the return value is the first output, arguments follow in order.
         let (mut read, mut written) = (0, 0);
+        // The result is written only after the call.
         if self.result.is_some() {
             after += "  out[0] = result;\n";
             written = 1;
@@ -100,6 +109,8 @@ impl CSignature {
                     types.push(kind.c().to_owned());
                 }
                 CArgument::Input(kind, Some(n)) => {
+                    // Static, because large arrays do not fit on the stack; calls are serialised by the caller.
+                    // C has no arrays of length 0, so one element is declared at least.
                     let _ = writeln!(before, "  static {0} {name}[{1}];", kind.c(), n.max(&1));
                     let _ = writeln!(before, "  for (i = 0; i < {n}; i++) {name}[i] = ({}) in[{read} + i];", kind.c());
                     read += n;
@@ -128,12 +139,14 @@ impl CSignature {
         };
         format!(
             "{HEAD}{declared}\nint bramah_call(const double *in, double *out) {{\n  int i;\n{local}{before}  (void) in; (void) out; (void) i;\n  \
+             // `longjmp` from `ModelicaError` returns to this point.
              if (setjmp(bramah_back)) return 1;\n  {call};\n{after}  return 0;\n}}\n"
         )
     }
 }
 
-/// What every wrapper begins with: the functions of `ModelicaUtilities.h` (MLS 12.9.6), of which errors end the call.
+/// The beginning of every wrapper: the functions of `ModelicaUtilities.h` (Modelica 3.6, section 12.9.6).
+/// An error is stored and ends the call by `longjmp`; messages go to the standard error output.
 const HEAD: &str = "#include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -159,7 +172,7 @@ char *ModelicaAllocateString(size_t length) {
 }
 ";
 
-/// The header that C sources of a user may include; every wrapper defines what it declares.
+/// The text of `ModelicaUtilities.h`, which C sources of a user may include. Every wrapper defines these functions.
 pub const UTILITIES: &str = "#ifndef MODELICA_UTILITIES_H
 #define MODELICA_UTILITIES_H
 #include <stdarg.h>
@@ -177,7 +190,7 @@ char *ModelicaAllocateStringWithErrorReturn(size_t length);
 #endif
 ";
 
-/// A text as C writes it.
+/// A text as a C string literal. Bytes outside ASCII become octal escapes.
 fn literal(text: &str) -> String {
     let mut out = String::from("\"");
     for byte in text.bytes() {
@@ -192,11 +205,14 @@ fn literal(text: &str) -> String {
     out + "\""
 }
 
-/// A compiled function of numbers, with its name for messages.
+/// Loads a compiled wrapper as a function of numbers. The signature must be the one it was written from.
+/// Inputs are the numbers of the input arguments in order, arrays element by element; outputs as in
+/// [`CSignature::outputs`].
 ///
 /// # Errors
-/// Why the library cannot be loaded.
+/// The message of the system, if the library cannot be loaded.
 pub fn bind(compiled: CompiledC, signature: &CSignature) -> Result<Arc<dyn ExternalFunction>, String> {
+    // Only Real inputs may take any value, so only they have derivatives.
     let smooth = signature.arguments.iter().flat_map(|argument| match argument {
         CArgument::Input(kind, n) => vec![*kind == CNumberType::Real; n.unwrap_or(1)],
         _ => Vec::new(),
@@ -207,32 +223,38 @@ pub fn bind(compiled: CompiledC, signature: &CSignature) -> Result<Arc<dyn Exter
     Ok(Arc::new(CFunction { library, by: None }))
 }
 
-/// The compiled code.
+/// A compiled C function with its library.
 #[derive(Debug)]
 struct CLibrary {
+    /// The name of the function, for messages.
     name: String,
-    /// How many numbers come out.
+    /// The number of outputs.
     outputs: usize,
-    /// By number that goes in: whether it may take any value.
+    /// For each input, whether it is Real and may take any value.
     smooth: Vec<bool>,
+    /// The library and what is known of its last call. One call runs at a time.
     called: Mutex<CallState>,
 }
 
-/// C code need not be fit for several threads at once.
+/// The state that a call changes. A mutex guards it, because C code need not be safe in several threads.
 #[derive(Debug)]
+/// The loaded wrapper.
 struct CallState {
     native: native::WrapperLibrary,
-    /// The last call: each output is asked for by itself.
+    /// The bits of the last arguments, with all outputs. Equations ask for one output at a time.
     last: Option<(Vec<u64>, Vec<f64>)>,
+    /// The message of the last call that failed.
     trouble: Option<String>,
 }
 
 impl CLibrary {
+    /// One output. NaN if the call failed.
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         let bits: Vec<u64> = args.iter().map(|x| x.to_bits()).collect();
         let mut called = self.called.lock().unwrap_or_else(PoisonError::into_inner);
         if called.last.as_ref().is_none_or(|(of, _)| *of != bits) {
             let mut found = vec![f64::NAN; self.outputs];
+            // Outputs that a failed call has not written must not look like results.
             if let Err(words) = called.native.call(args, &mut found) {
                 found.fill(f64::NAN);
                 called.trouble = Some(format!("`{}`: {words}", self.name));
@@ -243,16 +265,19 @@ impl CLibrary {
     }
 }
 
-/// The function, or its differences by one number that goes in.
+/// The function itself, or its derivatives by one input.
 #[derive(Debug)]
 struct CFunction {
+    /// The compiled code, shared by the function and its derivatives.
     library: Arc<CLibrary>,
+    /// The input of the derivative. `None` for the function itself.
     by: Option<usize>,
 }
 
 impl ExternalFunction for CFunction {
     fn value(&self, output: usize, args: &[f64]) -> f64 {
         let Some(by) = self.by else { return self.library.value(output, args) };
+        // Two calls, one on each side of the argument.
         let reach = REACH * args[by].abs().max(SMALL);
         let mut beside = args.to_vec();
         let mut at = |x: f64| {
@@ -263,6 +288,7 @@ impl ExternalFunction for CFunction {
     }
 
     fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
+        // Differences of differences would be too inaccurate: there are no second derivatives.
         let smooth = self.by.is_none() && self.library.smooth.get(input) == Some(&true);
         smooth.then(|| {
             Arc::new(CFunction { library: self.library.clone(), by: Some(input) }) as Arc<dyn ExternalFunction>

@@ -1,5 +1,7 @@
-//! A unit's file: a ZIP archive with the description, libraries for some machines and resources. What comes out of it is
-//! bounded, and stays below the folder it is unpacked to.
+//! The file of an FMU: a ZIP archive with `modelDescription.xml`, libraries for several platforms, and resources.
+//! Bytes enter; the description as text, and a temporary folder with the library and resources, leave.
+//!
+//! Archives may be hostile. The size of what is unpacked is bounded, and no path may lead out of the folder.
 
 use super::FmuError;
 use super::description::FmuStandard;
@@ -8,34 +10,35 @@ use std::borrow::Cow;
 use std::io::{Cursor, Read};
 use std::path::PathBuf;
 
-/// Bytes of the description at most.
+/// The largest size of the description in bytes.
 const MOST_TEXT: u64 = 256 << 20;
-/// Bytes unpacked in all at most.
+/// The largest total size of unpacked files in bytes.
 const MOST_BYTES: u64 = 4 << 30;
-/// Files at most.
+/// The largest number of files in an archive.
 const MOST_FILES: usize = 100_000;
 
-/// An archive in memory.
+/// An archive in memory, whose directory has been read.
 pub struct FmuArchive<'a> {
+    /// The reader.
     zip: zip::ZipArchive<Cursor<&'a [u8]>>,
 }
 
-/// What is needed of an archive, on the disk.
+/// The files of a unit that a run needs, on the disk.
 #[derive(Debug)]
 pub struct FmuFiles {
-    /// Goes when the last user goes.
+    /// The folder, which is deleted when the last user drops this.
     pub folder: TemporaryFolder,
-    /// The library.
+    /// The path of the library.
     pub library: PathBuf,
-    /// The folder of resources, if the unit has one.
+    /// The folder of resources. `None` if the unit has none.
     pub resources: Option<PathBuf>,
 }
 
 impl<'a> FmuArchive<'a> {
-    /// Looks at a file.
+    /// Reads the directory of an archive.
     ///
     /// # Errors
-    /// It is no archive, or holds too much.
+    /// It is no ZIP archive, or holds too many files.
     pub fn open(bytes: &'a [u8]) -> Result<Self, FmuError> {
         let zip = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|why| format!("it is no ZIP archive: {why}"))?;
         if zip.len() > MOST_FILES {
@@ -47,11 +50,12 @@ impl<'a> FmuArchive<'a> {
     /// The text of `modelDescription.xml`.
     ///
     /// # Errors
-    /// It is missing, damaged or too long.
+    /// It is missing, damaged, too long, or not UTF-8.
     pub fn description(&mut self) -> Result<String, FmuError> {
         let file = self.zip.by_name("modelDescription.xml");
         let file = file.map_err(|why| format!("its `modelDescription.xml` cannot be read: {why}"))?;
         let mut text = String::new();
+        // One byte more than allowed shows that the text is too long; the size in the directory may be wrong.
         let read = file.take(MOST_TEXT + 1).read_to_string(&mut text);
         read.map_err(|why| format!("its `modelDescription.xml` cannot be read: {why}"))?;
         if text.len() as u64 > MOST_TEXT {
@@ -60,10 +64,10 @@ impl<'a> FmuArchive<'a> {
         Ok(text)
     }
 
-    /// The folder with the library for this machine, and its name.
+    /// The folder inside the archive with the library for this machine, and the library's name.
     ///
     /// # Errors
-    /// There is none.
+    /// There is no such library.
     pub fn library(&self, version: FmuStandard, identifier: &str) -> Result<[String; 2], FmuError> {
         let names: Vec<String> = self.zip.file_names().filter_map(Result::ok).map(Cow::into_owned).collect();
         let file = format!("{identifier}{}", std::env::consts::DLL_SUFFIX);
@@ -75,12 +79,13 @@ impl<'a> FmuArchive<'a> {
         }
     }
 
-    /// Unpacks the library for this machine with what lies beside it, and the resources.
+    /// Unpacks the library for this machine with the files beside it, and the resources.
     ///
     /// # Errors
-    /// There is no library for this machine, a path leads out of the archive, or the disk does not take it.
+    /// There is no library for this machine, a path leads out of the archive, it is too large, or the disk refuses it.
     pub fn unpack(&mut self, version: FmuStandard, identifier: &str) -> Result<FmuFiles, FmuError> {
         let [beside, library] = self.library(version, identifier)?;
+        // Other files, such as sources and libraries of other platforms, stay packed.
         let wanted = [&*beside, "resources/"];
         let folder = TemporaryFolder::new().map_err(|why| format!("it cannot be unpacked: {why}"))?;
         let (mut left, mut resources) = (MOST_BYTES, None);
@@ -110,7 +115,7 @@ impl<'a> FmuArchive<'a> {
     }
 }
 
-/// The folders in which a library for this machine may lie.
+/// The folders below `binaries` for this machine, the preferred one first. Empty on a machine that is not supported.
 fn platforms(version: FmuStandard) -> Vec<&'static str> {
     let (two, three) = match (std::env::consts::OS, std::env::consts::ARCH) {
         ("linux", "x86_64") => ("linux64", "x86_64-linux"),
@@ -121,12 +126,13 @@ fn platforms(version: FmuStandard) -> Vec<&'static str> {
         _ => return Vec::new(),
     };
     match version {
-        // later tools write the names of 3.0 into units of 2.0 too
+        // Newer tools write the platform names of FMI 3.0 into units of FMI 2.0 too.
         FmuStandard::Two => vec![two, three],
         FmuStandard::Three => vec![three],
     }
 }
 
+/// The message that there is no library for this machine. It lists the platforms that the archive has.
 fn no_library(version: FmuStandard, file: &str, names: &[String]) -> FmuError {
     let mut has: Vec<&str> =
         names.iter().filter_map(|n| n.strip_prefix("binaries/")?.split_once('/')).map(|(p, _)| p).collect();

@@ -1,31 +1,34 @@
-//! `modelDescription.xml` of FMI 2.0 and 3.0: what a unit says of itself. Numbers are kept in the unit's own units;
-//! [`UnitConversion`] leads to SI. Source: the standards' sections on the model description.
+//! Reads `modelDescription.xml` of FMI 2.0 and 3.0, the description of a unit.
+//! XML text enters; variables, states, capabilities and unit conversions leave. The parent module opens units by it.
+//!
+//! Numbers are kept in the unit's own measurement units; [`UnitConversion`] converts them to SI.
+//! Source: the sections of both standards on the model description schema.
 
 use super::FmuError;
 use bramah_expr::units::MeasurementUnit;
 use roxmltree::{Document, Node, ParsingOptions};
 use rustc_hash::FxHashMap;
 
-/// A version of the standard.
+/// A version of the FMI standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmuStandard {
-    /// 2.0
+    /// FMI 2.0.
     Two,
-    /// 3.0
+    /// FMI 3.0 and its minor versions.
     Three,
 }
 
-/// A way to run a unit.
+/// An interface of FMI, by which a unit is run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmuInterface {
-    /// The unit brings its own solver and is taken from one communication point to the next.
+    /// The unit has its own solver and is stepped from one communication point to the next.
     CoSimulation,
-    /// The unit gives derivatives, which are solved with the circuit.
+    /// The unit computes derivatives, which are integrated together with the circuit.
     ModelExchange,
 }
 
 impl FmuInterface {
-    /// As the standards call it.
+    /// The name in the standards.
     pub fn name(self) -> &'static str {
         match self {
             FmuInterface::CoSimulation => "Co-Simulation",
@@ -34,18 +37,18 @@ impl FmuInterface {
     }
 }
 
-/// What a unit offers in one of the two ways.
+/// The capabilities of a unit for one interface.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FmuCapabilities {
-    /// The name of its library.
+    /// The model identifier: the name of its library without extension.
     pub identifier: String,
-    /// A process can hold one instance at most.
+    /// True if a process can hold only one instance.
     pub only_once: bool,
-    /// It computes directional derivatives.
+    /// True if the unit computes directional derivatives.
     pub derivatives: bool,
 }
 
-/// The type of a variable as the functions of the standard pass it.
+/// The type of a variable, which selects the function that passes it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs, reason = "the types of the standard by their names")]
 pub enum FmuDataType {
@@ -64,9 +67,11 @@ pub enum FmuDataType {
 }
 
 impl FmuDataType {
+    /// The type that an XML element stands for. `None` for types that are not supported, such as clocks and binaries.
     fn of(version: FmuStandard, element: &str) -> Option<Self> {
         Some(match (version, element) {
             (FmuStandard::Two, "Real") | (FmuStandard::Three, "Float64") => FmuDataType::Float64,
+            // Enumerations are 32-bit integers in FMI 2.0 and 64-bit integers in FMI 3.0.
             (FmuStandard::Two, "Integer" | "Enumeration") | (FmuStandard::Three, "Int32") => FmuDataType::Int32,
             (_, "Boolean") => FmuDataType::Boolean,
             (_, "String") => FmuDataType::String,
@@ -83,22 +88,22 @@ impl FmuDataType {
         })
     }
 
-    /// Whether it is a number with a unit.
+    /// True for floating-point types, which alone have measurement units.
     pub fn is_real(self) -> bool {
         matches!(self, FmuDataType::Float64 | FmuDataType::Float32)
     }
 }
 
-/// From numbers of the unit to SI: `factor*x + offset`.
+/// The conversion from a measurement unit of the FMU to SI: `factor*x + offset`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnitConversion {
-    /// The SI unit as Modelica writes it; empty where none is known.
+    /// The SI unit in the notation of Modelica. Empty if it is not known.
     pub si: String,
-    /// The unit in which numbers are shown.
+    /// The unit for display. Empty if it is the SI unit or not known.
     pub shown: String,
-    /// How many SI units one is.
+    /// The size of the unit in SI units.
     pub factor: f64,
-    /// Where its zero lies.
+    /// The SI value of the unit's zero.
     pub offset: f64,
 }
 
@@ -108,16 +113,16 @@ impl Default for UnitConversion {
     }
 }
 
-/// What a variable is for.
+/// The role of a variable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmuCausality {
     /// Set before the start.
     Parameter,
-    /// Set from outside.
+    /// Set from outside at any time.
     Input,
-    /// Meant for others.
+    /// Computed for the outside.
     Output,
-    /// Anything else.
+    /// Local, calculated, structural or independent.
     Other,
 }
 
@@ -128,81 +133,83 @@ pub struct FmuVariable {
     pub name: String,
     /// What it means.
     pub description: String,
-    /// The number by which functions name it.
+    /// The value reference, by which functions identify the variable.
     pub reference: u32,
-    /// Its type.
+    /// The type that functions pass.
     pub passed: FmuDataType,
-    /// What it is for.
+    /// Its role.
     pub causality: FmuCausality,
-    /// Whether it changes between events.
+    /// True if it may change between events. Only real variables can.
     pub continuous: bool,
-    /// Sizes, empty for a scalar.
+    /// The size of each dimension. Empty for a scalar.
     pub dims: Vec<usize>,
-    /// Numbers at the start, in the unit's own units; none where the unit computes them.
+    /// Start values in the unit's own measurement unit, row by row. Empty if the unit computes them.
     pub start: Vec<f64>,
-    /// The start of a text.
+    /// The start value of a text variable.
     pub text: String,
-    /// Least and greatest value, and its usual size.
+    /// The smallest and the largest value, and the nominal one, in the unit's own measurement unit.
     pub limits: [Option<f64>; 3],
-    /// To SI.
+    /// The conversion to SI.
     pub scale: UnitConversion,
-    /// Of a derivative: the state, as the description names it, then as an index.
+    /// For a derivative, its state: first as the file refers to it, after [`resolve`] as an index of variables.
     state: Option<usize>,
-    /// Sizes as the description has them.
+    /// The dimensions as the file gives them.
     sizes: Vec<FmuDimension>,
 }
 
-/// One size of an array.
+/// One dimension of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum FmuDimension {
+    /// A number.
     Given(usize),
-    /// The start of the variable with this value reference.
+    /// The start value of the variable with this value reference (a structural parameter).
     Of(u32),
 }
 
 impl FmuVariable {
-    /// How many numbers it holds.
+    /// The number of its elements.
     pub fn size(&self) -> usize {
         self.dims.iter().product()
     }
 }
 
-/// What a unit says of itself.
+/// The description of a unit.
 #[derive(Clone, Debug)]
 pub struct FmuDescription {
-    /// Of the standard.
+    /// The version of the standard.
     pub version: FmuStandard,
-    /// The model.
+    /// The name of the model.
     pub name: String,
-    /// What it means.
+    /// The description of the model. Empty if there is none.
     pub description: String,
-    /// The program that wrote it.
+    /// The tool that generated the unit. Empty if it is not named.
     pub tool: String,
-    /// What the library wants to see.
+    /// The GUID (FMI 2.0) or instantiation token (FMI 3.0), which the library checks.
     pub token: String,
-    /// As Co-Simulation.
+    /// The capabilities for Co-Simulation. `None` if the unit lacks this interface.
     pub co_simulation: Option<FmuCapabilities>,
-    /// As Model Exchange.
+    /// The capabilities for Model Exchange. `None` if the unit lacks this interface.
     pub model_exchange: Option<FmuCapabilities>,
-    /// All variables.
+    /// The variables in the order of the file. Those of unsupported types are left out.
     pub variables: Vec<FmuVariable>,
-    /// Continuous states with their derivatives, as indices.
+    /// The continuous states, each with its derivative, as indices of variables.
     pub states: Vec<(usize, usize)>,
-    /// How many event indicators there are.
+    /// The number of event indicators.
     pub indicators: usize,
-    /// A communication step that suits it (s).
+    /// The communication step that the unit suggests (s).
     pub step: Option<f64>,
 }
 
-/// Variables of a unit at most; beyond, a size is probably mistaken.
+/// The largest number of elements of all variables. A larger one is probably a mistaken size.
 const MOST_VALUES: usize = 1_000_000;
 
 impl FmuDescription {
-    /// Reads the text.
+    /// Reads the XML text.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// It is no valid XML or no description, has another version of FMI, or contradicts itself.
     pub fn read(text: &str) -> Result<Self, FmuError> {
+        // The limit bounds memory; the parser also refuses entities, with which small files can grow without bound.
         let options = ParsingOptions { nodes_limit: 10_000_000, ..ParsingOptions::default() };
         let tree = Document::parse_with_options(text, options)
             .map_err(|why| format!("its `modelDescription.xml` is no valid XML: {why}"))?;
@@ -226,6 +233,7 @@ impl FmuDescription {
         let (states, indicators) = structure(root, version, &variables)?;
         let co_simulation = child(root, "CoSimulation");
         let number = |node: Option<Node<'_, '_>>, name| node?.attribute(name)?.trim().parse::<f64>().ok();
+        // Without a step for experiments, the unit's own step is the best guess.
         let step = number(child(root, "DefaultExperiment"), "stepSize");
         let step = step.or_else(|| number(co_simulation, "fixedInternalStepSize"));
         Ok(FmuDescription {
@@ -239,11 +247,12 @@ impl FmuDescription {
             variables,
             states,
             indicators,
+            // A step of zero or less counts as none.
             step: step.filter(|s| s.is_finite() && *s > 0.0),
         })
     }
 
-    /// What it offers in one way.
+    /// The capabilities for an interface. `None` if the unit lacks it.
     pub fn offer(&self, kind: FmuInterface) -> Option<&FmuCapabilities> {
         match kind {
             FmuInterface::CoSimulation => self.co_simulation.as_ref(),
@@ -251,13 +260,13 @@ impl FmuDescription {
         }
     }
 
-    /// Variables of a causality, as indices.
+    /// The numeric variables of a role, as indices.
     pub fn of(&self, causality: FmuCausality) -> Vec<usize> {
         let all = self.variables.iter().enumerate();
         all.filter(|(_, v)| v.causality == causality && v.passed != FmuDataType::String).map(|(i, _)| i).collect()
     }
 
-    /// Texts that may be set.
+    /// The scalar text parameters, as indices of variables.
     pub fn texts(&self) -> Vec<usize> {
         let all = self.variables.iter().enumerate();
         let is = |v: &FmuVariable| {
@@ -267,18 +276,25 @@ impl FmuDescription {
     }
 }
 
+/// The child elements of a node.
 fn elements<'a, 'b>(node: Node<'a, 'b>) -> impl Iterator<Item = Node<'a, 'b>> {
     node.children().filter(Node::is_element)
 }
 
+/// The first child element with this name.
 fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
     elements(node).find(|c| c.tag_name().name() == name)
 }
 
+/// The value of a Boolean attribute. False if it is missing.
 fn flag(node: Node<'_, '_>, name: &str) -> bool {
     matches!(node.attribute(name), Some("true" | "1"))
 }
 
+/// The capabilities from the element of an interface.
+///
+/// # Errors
+/// The model identifier is missing, or is no plain name: it becomes part of a path.
 fn offer(node: Node<'_, '_>) -> Result<FmuCapabilities, FmuError> {
     let identifier = node.attribute("modelIdentifier").unwrap_or_default().to_owned();
     let letter = |c: char| c.is_alphanumeric() || c == '_';
@@ -292,15 +308,18 @@ fn offer(node: Node<'_, '_>) -> Result<FmuCapabilities, FmuError> {
     })
 }
 
-/// Type definitions by their names, and units by theirs.
+/// The elements that variables refer to by name.
 struct TypeDefinitions<'a, 'b> {
+    /// Type definitions by their names.
     types: FxHashMap<&'a str, Node<'a, 'b>>,
+    /// Unit definitions by their names.
     units: FxHashMap<&'a str, Node<'a, 'b>>,
 }
 
+/// Collects type and unit definitions.
 fn types<'a, 'b>(root: Node<'a, 'b>, version: FmuStandard) -> TypeDefinitions<'a, 'b> {
     let all = child(root, "TypeDefinitions").into_iter().flat_map(elements);
-    // in FMI 2.0 the attributes stand in an element inside
+    // In FMI 2.0 the attributes are in a child element, such as `Real`.
     let types = all.filter_map(|t| {
         let inner = if version == FmuStandard::Two { elements(t).next()? } else { t };
         Some((t.attribute("name")?, inner))
@@ -309,6 +328,10 @@ fn types<'a, 'b>(root: Node<'a, 'b>, version: FmuStandard) -> TypeDefinitions<'a
     TypeDefinitions { types: types.collect(), units: units.filter_map(|u| Some((u.attribute("name")?, u))).collect() }
 }
 
+/// Reads a variable. `None` if its type is not supported.
+///
+/// # Errors
+/// The name is missing, or a number cannot be read.
 fn variable(
     node: Node<'_, '_>,
     version: FmuStandard,
@@ -319,9 +342,11 @@ fn variable(
         FmuStandard::Two => elements(node).find(|c| FmuDataType::of(version, c.tag_name().name()).is_some()),
         FmuStandard::Three => Some(node),
     };
+    // FMI 2.0 has the attributes in a child element named after the type; FMI 3.0 has the type as the element itself.
     let Some(inner) = inner else { return Ok(None) };
     let Some(passed) = FmuDataType::of(version, inner.tag_name().name()) else { return Ok(None) };
     let declared = inner.attribute("declaredType").and_then(|t| types.types.get(t).copied());
+    // An attribute of the variable takes precedence over that of its declared type.
     let said = |key: &str| inner.attribute(key).or_else(|| declared.and_then(|d| d.attribute(key)));
     let wrong = |what: &str, text: &str| format!("`{text}` is no {what} of the variable `{name}`");
     let number = |key: &str| said(key).and_then(|text| text.trim().parse::<f64>().ok()).filter(|x| x.is_finite());
@@ -349,6 +374,7 @@ fn variable(
     });
     let unit = said("unit").unwrap_or_default();
     let scale = if passed.is_real() { scale(unit, said("displayUnit"), types)? } else { UnitConversion::default() };
+    // Continuous is the default of real variables.
     let discrete = matches!(node.attribute("variability"), Some("discrete" | "constant" | "fixed" | "tunable"));
     Ok(Some(FmuVariable {
         description: node.attribute("description").unwrap_or_default().to_owned(),
@@ -367,6 +393,7 @@ fn variable(
     }))
 }
 
+/// A number or Boolean value. `None` if it is neither.
 fn value(text: &str) -> Option<f64> {
     match text {
         "true" => Some(1.0),
@@ -375,12 +402,16 @@ fn value(text: &str) -> Option<f64> {
     }
 }
 
-/// Puts in what refers to other variables: states of derivatives, and sizes.
+/// Resolves references between variables: the states of derivatives, and sizes given by other variables.
+///
+/// # Errors
+/// A state or size does not exist, there are too many elements, or start values do not fit the size.
 fn resolve(variables: &mut [FmuVariable], version: FmuStandard) -> Result<(), FmuError> {
     let at: FxHashMap<u32, usize> = variables.iter().enumerate().map(|(i, v)| (v.reference, i)).collect();
     let count = variables.len();
     for v in variables.iter_mut() {
         v.state = match (v.state, version) {
+            // FMI 2.0 counts variables from 1; FMI 3.0 uses value references.
             (Some(index), FmuStandard::Two) => {
                 Some(index.checked_sub(1).filter(|i| *i < count).ok_or_else(|| no_state(&v.name))?)
             }
@@ -409,7 +440,7 @@ fn resolve(variables: &mut [FmuVariable], version: FmuStandard) -> Result<(), Fm
         if values > MOST_VALUES {
             return Err(format!("its variables hold more than {MOST_VALUES} values").into());
         }
-        // one start value serves all elements
+        // One start value serves all elements of an array.
         if v.start.len() == 1 && v.size() > 1 {
             v.start = vec![v.start[0]; v.size()];
         }
@@ -420,11 +451,12 @@ fn resolve(variables: &mut [FmuVariable], version: FmuStandard) -> Result<(), Fm
     Ok(())
 }
 
+/// The error about a derivative whose state does not exist.
 fn no_state(name: &str) -> FmuError {
     format!("`{name}` is the derivative of a variable that is not there").into()
 }
 
-/// Pairs of state and derivative, and the number of event indicators.
+/// The continuous states with their derivatives, as indices of variables, and the number of event indicators.
 fn structure(
     root: Node<'_, '_>,
     version: FmuStandard,
@@ -451,6 +483,7 @@ fn structure(
         let found = named(node).and_then(|i| Some((variables.get(i)?.state?, i)));
         states.push(found.ok_or("a derivative of its `ModelStructure` is the derivative of nothing")?);
     }
+    // FMI 2.0 gives the number; in FMI 3.0 indicators are variables, possibly arrays.
     let indicators = match version {
         FmuStandard::Two => root.attribute("numberOfEventIndicators").and_then(|n| n.trim().parse().ok()).unwrap_or(0),
         FmuStandard::Three => {
@@ -465,10 +498,14 @@ fn structure(
     Ok((states, indicators))
 }
 
-/// The base units in the order in which they are written.
+/// The SI base units of FMI, in the order in which they are written.
 const BASE: [&str; 8] = ["kg", "m", "s", "A", "K", "mol", "cd", "rad"];
 
-/// How a unit of the description leads to SI: by its definition there, or else by its name.
+/// The conversion of a measurement unit to SI: by its definition in the file, or else by its name.
+/// `shown` is the display unit.
+///
+/// # Errors
+/// The definition has no number where one is due, or a factor of 0.
 fn scale(unit: &str, shown: Option<&str>, types: &TypeDefinitions<'_, '_>) -> Result<UnitConversion, FmuError> {
     if unit.is_empty() {
         return Ok(UnitConversion::default());
@@ -486,9 +523,11 @@ fn scale(unit: &str, shown: Option<&str>, types: &TypeDefinitions<'_, '_>) -> Re
         }
         None => known.and_then(|u| u.exponents()).map(|e| e.to_vec()),
     };
+    // The definition in the file counts, even if the name is a known unit of another size.
     let (factor, offset) = match (base, known) {
         (Some(_), _) => (number("factor", 1.0), number("offset", 0.0)),
         (None, Some(u)) => (Some(u.factor()), Some(u.to_si(0.0))),
+        // A unit that is not known is passed on as a number without a unit.
         (None, None) => (Some(1.0), Some(0.0)),
     };
     let (Some(factor), Some(offset)) = (factor.filter(|f| *f != 0.0), offset) else {
@@ -497,6 +536,7 @@ fn scale(unit: &str, shown: Option<&str>, types: &TypeDefinitions<'_, '_>) -> Re
     let coherent = |u: &MeasurementUnit| {
         u.factor() == 1.0 && u.to_si(0.0) == 0.0 && u.exponents().map(|e| e.to_vec()) == exponents
     };
+    // A known name of the same unit is preferred to the product of base units.
     let si = match &exponents {
         _ if known.as_ref().is_some_and(coherent) => unit.to_owned(),
         Some(exponents) => product(exponents),
@@ -508,10 +548,10 @@ fn scale(unit: &str, shown: Option<&str>, types: &TypeDefinitions<'_, '_>) -> Re
     Ok(UnitConversion { si, shown, factor, offset })
 }
 
-/// Units with a name that stands for one quantity only.
+/// Names of derived units that stand for one quantity only. `J`, for example, would also fit a torque.
 const NAMED: [&str; 9] = ["Pa", "N", "W", "V", "Ohm", "F", "H", "T", "Wb"];
 
-/// `kg.m2.s-1`, or its name where it has one.
+/// A unit as a product of base units such as `kg.m2.s-1`, or by its name if it has one.
 fn product(exponents: &[i16]) -> String {
     let is = |name: &&str| MeasurementUnit::parse(name).is_ok_and(|u| u.exponents().is_some_and(|e| e == *exponents));
     if let Some(name) = NAMED.into_iter().find(is) {

@@ -1,4 +1,8 @@
-//! A unit as the functions that its Modelica text calls (`text`), each a pure function of its arguments.
+//! The functions of an FMU that its Modelica text calls (see `text`), each a pure function of its arguments.
+//!
+//! The first argument is the state of the unit, a number that the pool turns into an instance (see `pool`).
+//! Equations ask for one output at a time, so the last results are kept by their arguments. Derivatives come from the
+//! unit where it offers them, else from central differences.
 
 use super::FmuError;
 use super::pool::InstancePool;
@@ -6,39 +10,43 @@ use bramah_expr::function::ExternalFunction;
 use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The next event of known time where there is none (s).
+/// The time of the next event if the unit knows of none (s).
 pub const NEVER: f64 = 1e60;
-/// Results that are kept.
+/// The number of results that are kept for each function.
 const MOST_KEPT: usize = 64;
-/// Step of a central difference as a part of the argument's size: the cube root of the precision of an `f64`.
+/// Step of a central difference, as a fraction of the argument's size: the cube root of the machine precision.
 const STEP: f64 = 6e-6;
 
-/// Which of the functions.
+/// One of the functions of a unit. Each comment lists the arguments, then the outputs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FmuOperation {
-    /// Parameters to the first state: `state`.
+    /// Parameters; the number of the first state.
     Begin,
-    /// At the start: time, inputs to continuous states and discrete outputs.
+    /// At the start. State, time, inputs; continuous states and discrete outputs.
     Start,
-    /// Of Co-Simulation: state, from, to, inputs to the next state and all outputs.
+    /// Co-Simulation. State, start and end of the step, inputs; the next state and all outputs.
     Advance,
-    /// Of Model Exchange: state, time, continuous states, inputs to derivatives, event indicators and all outputs.
+    /// Model Exchange, between events. State, time, continuous states, inputs; derivatives, event indicators, all
+    /// outputs.
     Evaluate,
-    /// Of Model Exchange: the same to the next state, the next event of known time, states and discrete outputs.
+    /// Model Exchange, at an event. The same; next state, time of the next event, continuous states, discrete outputs.
     Event,
 }
 
-/// A result, or why the unit has failed.
+/// All outputs of a call, or the reason why the unit failed.
 type FmuResult = Result<Arc<[f64]>, FmuError>;
 
-/// A function of a unit, or its derivative by one argument.
+/// One of the functions of a unit, or its derivatives by one argument.
 pub struct FmuFunction {
+    /// The instances of the unit.
     pool: Arc<InstancePool>,
+    /// Which function it is.
     task: FmuOperation,
+    /// The argument of the derivative. `None` for the function itself.
     by: Option<usize>,
-    /// The last results, by the bits of their arguments.
+    /// The last results by the bits of their arguments, oldest first. Failures are kept too.
     known: Mutex<VecDeque<(Box<[u64]>, FmuResult)>>,
-    /// What went wrong with the last call.
+    /// The failure of the last call. `None` if it succeeded.
     trouble: Mutex<Option<FmuError>>,
 }
 
@@ -49,13 +57,14 @@ impl std::fmt::Debug for FmuFunction {
 }
 
 impl FmuFunction {
-    /// One of the functions.
+    /// A function of a unit.
     pub fn new(pool: Arc<InstancePool>, task: FmuOperation) -> Self {
         FmuFunction { pool, task, by: None, known: Mutex::default(), trouble: Mutex::default() }
     }
 
+    /// All outputs for some arguments. `None` if the unit failed, or an argument is not finite.
     fn results(&self, args: &[f64]) -> Option<Arc<[f64]>> {
-        // a trial step of a solver that leads to nothing is not the unit's fault
+        // Solvers try steps that lead to NaN; the unit must not see such arguments, and it is not its failure.
         if args.iter().any(|x| !x.is_finite()) {
             return None;
         }
@@ -65,12 +74,14 @@ impl FmuFunction {
         found.ok()
     }
 
+    /// All outputs, from the kept results or from the unit.
     fn found(&self, args: &[f64]) -> FmuResult {
         let bits: Box<[u64]> = args.iter().map(|x| x.to_bits()).collect();
         let known =
             |all: &VecDeque<(Box<[u64]>, FmuResult)>| all.iter().rev().find(|k| k.0 == bits).map(|k| k.1.clone());
         if let Some(found) = known(&self.known.lock().unwrap_or_else(PoisonError::into_inner)) {
             return found;
+            // The lock is not held during the call, which may take long and may be made by several threads at once.
         }
         let found = match self.by {
             None => compute(&self.pool, self.task, args).map(Arc::from),
@@ -91,7 +102,7 @@ impl ExternalFunction for FmuFunction {
     }
 
     fn partial(&self, input: usize) -> Option<Arc<dyn ExternalFunction>> {
-        // the state is a name, and what happens at events has no slope
+        // The state is an identifier, and what happens at events has no derivative.
         let smooth = matches!(self.task, FmuOperation::Evaluate | FmuOperation::Start) && input > 0;
         (self.by.is_none() && smooth).then(|| {
             Arc::new(FmuFunction { by: Some(input), ..FmuFunction::new(self.pool.clone(), self.task) })
@@ -108,12 +119,13 @@ impl ExternalFunction for FmuFunction {
     }
 }
 
-/// The state as the equations pass it.
+/// The number of a state as the equations pass it.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a whole number below 2^52")]
 fn number(state: f64) -> u64 {
     state as u64
 }
 
+/// Calls a function of the unit and gives all its outputs.
 fn compute(pool: &InstancePool, task: FmuOperation, args: &[f64]) -> Result<Vec<f64>, FmuError> {
     let description = pool.description();
     if task == FmuOperation::Begin {
@@ -123,6 +135,7 @@ fn compute(pool: &InstancePool, task: FmuOperation, args: &[f64]) -> Result<Vec<
     let n = description.states.len();
     match task {
         FmuOperation::Begin | FmuOperation::Start => pool.look(state, args[1], &[], &args[2..], |instance| {
+            // The order of the outputs here is the one that `text` reads them in.
             let mut found = vec![0.0; n];
             if n > 0 {
                 instance.states(&mut found)?;
@@ -132,6 +145,7 @@ fn compute(pool: &InstancePool, task: FmuOperation, args: &[f64]) -> Result<Vec<
         }),
         FmuOperation::Advance => {
             let (from, to, inputs) = (args[1], args[2], &args[3..]);
+            // At the start `from` and `to` are equal, and only outputs are wanted.
             let after = if to > from { pool.step(state, from, to, inputs)? } else { state };
             let mut found = vec![after as f64];
             let outputs = pool.look(after, to, &[], inputs, |instance| {
@@ -156,6 +170,7 @@ fn compute(pool: &InstancePool, task: FmuOperation, args: &[f64]) -> Result<Vec<
             let (time, states, inputs) = (args[1], &args[2..2 + n], &args[2 + n..]);
             let happened = pool.event(state, time, states, inputs)?;
             let mut found = vec![happened.state as f64, happened.next.unwrap_or(NEVER)];
+            // Outputs are read after the event, at the states that it has left.
             let outputs = pool.look(happened.state, time, &happened.states, inputs, |instance| {
                 let mut outputs = Vec::new();
                 pool.read(instance, &discrete(pool), &mut outputs).map(|()| outputs)
@@ -167,13 +182,13 @@ fn compute(pool: &InstancePool, task: FmuOperation, args: &[f64]) -> Result<Vec<
     }
 }
 
-/// Outputs that change at events only.
+/// The outputs that change at events only, as indices of variables.
 pub fn discrete(pool: &InstancePool) -> Vec<usize> {
     let all = pool.outputs.iter().copied();
     all.filter(|&i| !pool.description().variables[i].continuous).collect()
 }
 
-/// By the unit's own derivatives where it has them, else by central differences.
+/// The derivatives of all outputs by argument `by`: by the unit's own derivatives, or by central differences.
 fn derivative(pool: &InstancePool, task: FmuOperation, by: usize, args: &[f64]) -> Result<Vec<f64>, FmuError> {
     if task == FmuOperation::Evaluate
         && let Some(found) = directional(pool, by, args)
@@ -187,12 +202,14 @@ fn derivative(pool: &InstancePool, task: FmuOperation, by: usize, args: &[f64]) 
         moved[by] = x;
         compute(pool, task, &moved)
     };
+    // The quotient uses the difference of the rounded arguments.
     let (low, high) = (args[by] - STEP * size, args[by] + STEP * size);
     let (below, above) = (at(low)?, at(high)?);
     Ok(below.iter().zip(&above).map(|(b, a)| (a - b) / (high - low)).collect())
 }
 
-/// The usual size of an argument, where the unit says it; behind state and time come so many states, then inputs.
+/// The typical size of an argument, by the unit's nominal value or 1.
+/// The arguments are state and time, then `n` continuous states, then inputs element by element.
 fn nominal(pool: &InstancePool, n: usize, argument: usize) -> f64 {
     let description = pool.description();
     let of = |i: usize| description.variables[i].limits[2].map_or(1.0, f64::abs);
@@ -206,13 +223,15 @@ fn nominal(pool: &InstancePool, n: usize, argument: usize) -> f64 {
     }
 }
 
-/// `None` where the unit does not offer it: for time, event indicators, arrays, and before its start.
+/// Derivatives of all outputs by the function of the standard for directional derivatives.
+/// `None` if it does not apply: by time, with event indicators or arrays, before the start, or if the unit lacks it.
 fn directional(pool: &InstancePool, by: usize, args: &[f64]) -> Option<Result<Vec<f64>, FmuError>> {
     let description = pool.description();
     let n = description.states.len();
     let scalar = |i: &usize| description.variables[*i].dims.is_empty();
     let simple = description.indicators == 0 && pool.inputs.iter().chain(&pool.outputs).all(scalar);
     let state = number(args[0]);
+    // In FMI the function may be called only after initialization.
     if !pool.has_derivatives() || !simple || by < 2 || pool.is_root(state) {
         return None;
     }
@@ -220,6 +239,7 @@ fn directional(pool: &InstancePool, by: usize, args: &[f64]) -> Option<Result<Ve
     let reference = |i: usize| description.variables[i].reference;
     let derivatives = description.states.iter().map(|s| s.1);
     let all: Vec<usize> = derivatives.chain(pool.outputs.iter().copied()).collect();
+    // Outputs that change at events only have derivative 0.
     let smooth: Vec<usize> = all.iter().copied().filter(|&i| description.variables[i].continuous).collect();
     let unknowns: Vec<u32> = smooth.iter().map(|&i| reference(i)).collect();
     Some(pool.look(state, args[1], &args[2..2 + n], &args[2 + n..], |instance| {

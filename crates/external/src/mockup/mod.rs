@@ -1,9 +1,12 @@
-//! Functional mock-up units (FMUs) of other tools as components of a circuit.
+//! Functional mock-up units (FMUs) of other tools as components of a circuit (FMI 2.0 and 3.0).
 //!
-//! A unit becomes a Modelica class (`text`), compiled like any other, whose equations call the functions of the unit
-//! (`functions`). `archive` unpacks its file, `description` reads what it says of itself, `native` calls its library,
-//! `pool` keeps its instances. The crate `fmi` does much of this, but panics where a library lacks a function, unpacks
-//! archives without limit and sends a unit's words to a log; so this is written by hand.
+//! The bytes of an FMU enter; a Modelica class and the functions that it calls leave. The crate `model` opens the unit
+//! when it meets a component `FMU(file = ..)`.
+//! `archive` unpacks the file, `description` reads its XML, `text` writes the class, `functions` are what its equations
+//! call, `native` calls the library, `pool` keeps the instances.
+//!
+//! The published crate `fmi` does much of this. It panics if a library lacks a function, unpacks archives without limit
+//! and sends the unit's messages to a log, so it is not used.
 
 mod archive;
 mod description;
@@ -22,7 +25,7 @@ use native::FmuLibrary;
 use std::fmt;
 use std::sync::{Arc, OnceLock};
 
-/// Why a unit cannot be used, as the end of a sentence about it.
+/// The reason why a unit cannot be used, as the end of a sentence about it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FmuError(String);
 
@@ -44,22 +47,27 @@ impl From<&str> for FmuError {
     }
 }
 
-/// A unit that was read, for one of its kinds. Its library is loaded when it is first needed: whoever only looks at a
-/// circuit runs nothing of it.
+/// A unit that was read, with the interface by which it is used.
+/// Its library is loaded at the first use, so that showing or checking a circuit runs no foreign code.
 pub struct ImportedFmu {
+    /// The file.
     bytes: Vec<u8>,
+    /// The content of its `modelDescription.xml`.
     description: FmuDescription,
+    /// Co-Simulation or Model Exchange.
     kind: FmuInterface,
-    /// What it offers as this kind.
+    /// The capabilities that it declares for this interface.
     offer: FmuCapabilities,
+    /// The library, or why it cannot be loaded. Empty before the first use.
     code: OnceLock<Result<Arc<FmuLibrary>, FmuError>>,
 }
 
 impl ImportedFmu {
-    /// Reads a unit. `kind` is `auto`, `cs` or `me`; `auto` is Co-Simulation where the unit has it.
+    /// Reads a unit. `kind` is `auto`, `cs` or `me`; `auto` means Co-Simulation if the unit has it, else Model
+    /// Exchange.
     ///
     /// # Errors
-    /// What is wrong with the file, or that it has no such kind.
+    /// What is wrong with the file, that it lacks this interface, or that it has no library for this machine.
     pub fn open(bytes: Vec<u8>, kind: &str) -> Result<Self, FmuError> {
         let mut archive = FmuArchive::open(&bytes)?;
         let description = FmuDescription::read(&archive.description()?)?;
@@ -74,11 +82,12 @@ impl ImportedFmu {
         };
         let offer = description.offer(kind).cloned();
         let offer = offer.ok_or_else(|| format!("it does not offer {}", kind.name()))?;
+        // Only looked for, so that the message comes when the circuit is compiled and not in the run.
         archive.library(description.version, &offer.identifier)?;
         Ok(ImportedFmu { bytes, description, kind, offer, code: OnceLock::new() })
     }
 
-    /// Its library, from the first use on.
+    /// The library, which is unpacked and loaded at the first call.
     fn code(&self) -> Result<Arc<FmuLibrary>, FmuError> {
         let load = || {
             let unpacked = FmuArchive::open(&self.bytes)?.unpack(self.description.version, &self.offer.identifier)?;
@@ -87,12 +96,12 @@ impl ImportedFmu {
         self.code.get_or_init(load).clone()
     }
 
-    /// Its class in Modelica, which extends `FMU` and has its name.
+    /// The Modelica class of the unit, named `FMU`, which extends the class `FMU` at the root.
     pub fn class(&self) -> String {
         text::class(&self.description, self.kind)
     }
 
-    /// What the equations of one component call. `texts` are the values of its texts, a line `INDEX=VALUE` each.
+    /// The instances behind one component. `texts` are the values of its text parameters, one line `INDEX=VALUE` each.
     pub fn pool(self: &Arc<Self>, texts: &str) -> InstancePool {
         let line = |l: &str| {
             let (index, value) = l.split_once('=')?;
@@ -100,6 +109,7 @@ impl ImportedFmu {
         };
         let texts: Vec<(usize, String)> = texts.lines().filter_map(line).collect();
         let known = self.description.texts();
+        // Indices that are no text parameters of this unit are dropped.
         let texts = texts.into_iter().filter(|(i, _)| known.contains(i)).collect();
         InstancePool::new(self.clone(), texts)
     }

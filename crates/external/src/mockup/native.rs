@@ -1,7 +1,10 @@
-//! The functions of a unit's library, and all `unsafe` that calling them needs. Source: the headers of FMI 2.0.4 and 3.0.2.
+//! The functions of an FMU's library, and all `unsafe` that calling them needs.
+//! A library on the disk enters; instances leave, whose methods call the functions of FMI 2.0 or 3.0 alike.
+//! `pool` makes the instances and calls them in the order that the standards require.
+//! Source: the headers of FMI 2.0.4 and 3.0.2.
 //!
-//! What a unit does behind its functions cannot be guarded: a library that writes where it should not can bring the whole
-//! process down, as it would in any tool that loads it.
+//! Faults of the library cannot be contained: one that writes to a wrong address can bring the process down, as in any
+//! tool that loads it.
 
 #![allow(unsafe_code, reason = "calls functions of C by pointers that their library gives")]
 
@@ -14,12 +17,12 @@ use std::path::Path;
 use std::ptr;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// An instance, as a unit names it.
+/// An instance, a pointer that only the unit can interpret.
 type InstancePointer = *mut c_void;
-/// What nearly all functions give back.
+/// The status that nearly all functions return: 0 and 1 are success, larger numbers are failures.
 type FmuStatus = c_int;
 
-/// A table of functions that a library may have.
+/// Declares a table of the functions of a library by their names. A library may lack any of them.
 macro_rules! functions {
     ($(#[$doc:meta])* $table:ident { $($field:ident: $symbol:literal fn($($arg:ty),*) $(-> $back:ty)?;)* }) => {
         $(#[$doc])*
@@ -35,6 +38,7 @@ macro_rules! functions {
     };
 }
 
+// The fields are named by what the functions do; both tables use the same names where they can.
 functions! {
     /// FMI 2.0
     Two {
@@ -67,6 +71,7 @@ functions! {
     }
 }
 
+// The types of the pointers to values distinguish these functions from those of FMI 2.0, which has fewer types.
 functions! {
     /// FMI 3.0
     Three {
@@ -118,46 +123,59 @@ functions! {
     }
 }
 
-/// `fmi3LogMessageCallback`
+/// `fmi3LogMessageCallback` of FMI 3.0: environment, status, category, message.
 type FmuLogCallback = unsafe extern "C" fn(*mut c_void, FmuStatus, *const c_char, *const c_char);
 
-/// `fmi2CallbackFunctions`. The logger takes more arguments than its type says; it is only handed on.
+/// `fmi2CallbackFunctions` of FMI 2.0. The logger is variadic in C; here it is only passed on, so its type does not
+/// matter.
 #[repr(C)]
 #[derive(Debug)]
 struct FmuCallbacks {
+    /// `fmi2CallbackLogger`, in `logger.c`.
     logger: unsafe extern "C" fn(),
+    /// `fmi2CallbackAllocateMemory`: `calloc` of C.
     allocate: unsafe extern "C" fn(usize, usize) -> *mut c_void,
+    /// `fmi2CallbackFreeMemory`: `free` of C.
     free: unsafe extern "C" fn(*mut c_void),
+    /// `fmi2StepFinished`, for asynchronous steps: null.
     step_finished: *const c_void,
+    /// `fmi2ComponentEnvironment`: the address of the [`FmuMessages`].
     environment: *mut c_void,
 }
 
-/// `fmi2EventInfo`
+/// `fmi2EventInfo` of FMI 2.0, in the order of its fields. Flags are 0 or 1.
 #[repr(C)]
 #[derive(Default)]
 struct EventInfo {
+    /// `newDiscreteStatesNeeded`.
     again: c_int,
+    /// `terminateSimulation`.
     terminate: c_int,
+    /// `nominalsOfContinuousStatesChanged`.
     nominals_changed: c_int,
+    /// `valuesOfContinuousStatesChanged`.
     values_changed: c_int,
+    /// `nextEventTimeDefined`.
     next_defined: c_int,
+    /// `nextEventTime` (s).
     next: f64,
 }
 
+// `calloc` and `free` are given to the unit, which must use memory functions of its environment in FMI 2.0.
 unsafe extern "C" {
     fn calloc(count: usize, size: usize) -> *mut c_void;
     fn free(block: *mut c_void);
-    /// In `logger.c`.
+    /// Formats the variadic message of FMI 2.0, which Rust cannot do, and calls `bramah_mockup_said`. In `logger.c`.
     fn bramah_mockup_logger();
 }
 
-/// What a unit said last, at the address that it hands back.
+/// The last messages of an instance, oldest first. The unit gets its address and hands it back with each message.
 type FmuMessages = Mutex<Vec<String>>;
 
-/// Lines of a unit that are kept.
+/// The number of messages that are kept.
 const KEPT: usize = 20;
 
-/// Called by `logger.c`.
+/// Keeps a message of a unit. `logger.c` calls it.
 ///
 /// # Safety
 /// `environment` is null or the address that the instance was given; `message` is null or a text of C.
@@ -169,34 +187,39 @@ unsafe extern "C" fn bramah_mockup_said(environment: *mut c_void, status: FmuSta
     // SAFETY: what the caller promises; the box behind it lives as long as the instance.
     let (said, message) = unsafe { (&*environment.cast_const().cast::<FmuMessages>(), CStr::from_ptr(message)) };
     let mut lines = said.lock().unwrap_or_else(PoisonError::into_inner);
-    // what is in order is not worth a line
+    // Messages of status OK are routine and would push out those about a failure.
     if status != 0 {
         if lines.len() == KEPT {
             lines.remove(0);
         }
+        // A message is cut to 500 characters, because it becomes part of a sentence for the user.
         lines.push(message.to_string_lossy().trim().chars().take(500).collect());
     }
 }
 
-/// `fmi3LogMessageCallback`, see [`bramah_mockup_said`].
+/// The callback for messages of FMI 3.0, see [`bramah_mockup_said`].
 unsafe extern "C" fn log(environment: *mut c_void, status: FmuStatus, _: *const c_char, message: *const c_char) {
     // SAFETY: what the caller promises.
     unsafe { bramah_mockup_said(environment, status, message) }
 }
 
+/// The functions of a library by the version of the standard.
 #[derive(Debug)]
 enum FmuFunctionTable {
     Two(Two),
     Three(Three),
 }
 
-/// A loaded library.
+/// A loaded library, with what instances are made from.
 #[derive(Debug)]
 pub struct FmuLibrary {
+    /// Its functions.
     functions: FmuFunctionTable,
+    /// The GUID or instantiation token, which the library compares with its own.
     token: CString,
+    /// The location of the resources, in the form that the standard requires.
     resources: Option<CString>,
-    // after the functions, which point into it, and before the folder in which it lies
+    // Fields are dropped in order: the library after the functions, which point into it, and before its folder.
     _library: Library,
     _unpacked: FmuFiles,
 }
@@ -205,7 +228,7 @@ impl FmuLibrary {
     /// Loads the library of a unit.
     ///
     /// # Errors
-    /// The machine cannot load it.
+    /// The system cannot load it, for example because another library is missing.
     pub fn load(unpacked: FmuFiles, description: &FmuDescription) -> Result<Self, FmuError> {
         // SAFETY: the library's initializers run, as they would in any tool that loads the unit.
         let library = unsafe { Library::new(&unpacked.library) };
@@ -220,11 +243,12 @@ impl FmuLibrary {
     }
 }
 
-/// The folder of resources as each standard wants it: an address, or a path with a separator at its end.
+/// The location of the resources as each standard requires it: a URI in FMI 2.0, a path with a final separator in 3.0.
 fn resources(path: &Path, version: FmuStandard) -> CString {
     let path = path.to_string_lossy();
     let text = match version {
         FmuStandard::Two => {
+            // All other bytes are percent-encoded, as in any URI.
             let plain = |b: u8| b.is_ascii_alphanumeric() || b"/-_.~".contains(&b);
             let path: String =
                 path.bytes().map(|b| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") }).collect();
@@ -235,24 +259,28 @@ fn resources(path: &Path, version: FmuStandard) -> CString {
     CString::new(text).unwrap_or_default()
 }
 
-/// What came out of an event.
+/// The result of one pass of the event iteration.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DiscreteStateUpdate {
-    /// To be asked once more.
+    /// The unit needs another pass.
     pub again: bool,
-    /// The unit wants the run to end.
+    /// The unit requests the end of the simulation.
     pub terminate: bool,
-    /// States have new values.
+    /// The unit has changed its continuous states.
     pub states_changed: bool,
-    /// The next event of known time.
+    /// The time of the next event that is known in advance (s).
     pub next: Option<f64>,
 }
 
-/// An instance of a unit.
+/// An instance of a unit, freed when dropped.
 pub struct ImportedFmuInstance {
+    /// The library. It stays loaded as long as an instance exists.
     code: Arc<FmuLibrary>,
+    /// The unit's pointer.
     raw: InstancePointer,
+    /// Messages of the instance. Boxed, because the unit knows the address.
     said: Box<FmuMessages>,
+    /// The callbacks. Boxed for the same reason; FMI 2.0 lets the unit keep the pointer.
     _callbacks: Box<FmuCallbacks>,
 }
 
@@ -265,7 +293,7 @@ impl std::fmt::Debug for ImportedFmuInstance {
     }
 }
 
-/// Calls a function by its field in both tables, with its arguments for each; its status is judged by the caller.
+/// Calls a function by its field in both tables, with arguments for each. The result is that of `judge`.
 macro_rules! call {
     ($self:ident, two $two:ident($($a:expr),*), three $three:ident($($b:expr),*)) => {
         match &$self.code.functions {
@@ -283,17 +311,19 @@ macro_rules! call {
     };
 }
 
+/// The error that the library lacks a function that is needed.
 fn missing(function: &str) -> FmuError {
     format!("its library has no function for `{}`", function.replace('_', " ")).into()
 }
 
 impl ImportedFmuInstance {
-    /// A new instance.
+    /// Makes an instance.
     ///
     /// # Errors
-    /// The unit refuses; with what it says.
+    /// The unit refuses, or its library lacks the function. The error quotes the unit's messages.
     pub fn new(code: &Arc<FmuLibrary>, name: &str, kind: FmuInterface) -> Result<Self, FmuError> {
         let said: Box<FmuMessages> = Box::default();
+        // The address stays valid when the box is moved into the instance.
         let environment = ptr::from_ref::<FmuMessages>(&said).cast_mut().cast::<c_void>();
         let callbacks = Box::new(FmuCallbacks {
             logger: bramah_mockup_logger,
@@ -304,7 +334,7 @@ impl ImportedFmuInstance {
         });
         let name = CString::new(name).unwrap_or_default();
         let (token, place) = (code.token.as_ptr(), code.resources.as_deref().map_or(ptr::null(), CStr::as_ptr));
-        // with logging on: some units say nothing otherwise, not even why they fail
+        // Logging is on: some units report nothing otherwise, not even why they fail.
         // SAFETY: texts and callbacks live as long as the instance needs them; the types are those of the headers.
         let raw = unsafe {
             match (&code.functions, kind) {
@@ -330,14 +360,16 @@ impl ImportedFmuInstance {
         Ok(ImportedFmuInstance { code: code.clone(), raw, said, _callbacks: callbacks })
     }
 
-    /// An error unless the unit was content; with what it said.
+    /// Turns the status of a function into a result. An error quotes the messages of the unit.
     fn judge(&self, function: &str, status: FmuStatus) -> Result<(), FmuError> {
         let how = match status {
+            // OK and Warning. Messages about a call that succeeded would only confuse later ones.
             0 | 1 => {
                 self.said.lock().unwrap_or_else(PoisonError::into_inner).clear();
                 return Ok(());
             }
             2 => "was discarded",
+            // 2 to 4 are Discard, Error and Fatal in both standards; 5 of FMI 2.0 is Pending.
             3 => "failed",
             4 => "failed for good",
             _ => "did not end",
@@ -345,11 +377,13 @@ impl ImportedFmuInstance {
         Err(with_words(format!("its function for `{}` {how}", function.replace('_', " ")), &self.said))
     }
 
-    /// Enters the mode in which inputs can be set and outputs read before the start, at this time (s).
+    /// Enters initialization mode, in which inputs can be set and outputs read before the start. `start` is its time
+    /// (s).
     ///
     /// # Errors
     /// The unit refuses.
     pub fn enter_initialization(&mut self, start: f64) -> Result<(), FmuError> {
+        // FMI 3.0 passes the times with the mode; FMI 2.0 has a function of its own for them.
         if let FmuFunctionTable::Two(f) = &self.code.functions {
             let setup = f.setup.ok_or_else(|| missing("setup"))?;
             // SAFETY: the instance lives.
@@ -358,7 +392,7 @@ impl ImportedFmuInstance {
         call!(self, two enter_initialization(), three enter_initialization(false, 0.0, start, false, 0.0))
     }
 
-    /// Leaves it.
+    /// Leaves initialization mode.
     ///
     /// # Errors
     /// The unit refuses.
@@ -366,7 +400,7 @@ impl ImportedFmuInstance {
         call!(self, two exit_initialization(), three exit_initialization())
     }
 
-    /// Back to how it was made.
+    /// Resets the instance to the state after its creation.
     ///
     /// # Errors
     /// The unit refuses.
@@ -374,11 +408,13 @@ impl ImportedFmuInstance {
         call!(self, two reset(), three reset())
     }
 
-    /// Goes from a time to another (s).
+    /// Does a communication step of Co-Simulation (s).
     ///
     /// # Errors
-    /// The unit refuses, or wants the run to end.
+    /// The unit refuses, or requests the end of the simulation.
     pub fn step(&mut self, from: f64, to: f64) -> Result<(), FmuError> {
+        // Without event mode and early return, which are not requested at instantiation, only `terminate` has a
+        // meaning.
         let (mut event, mut terminate, mut early, mut last) = (false, false, false, from);
         call!(self, two do_step(from, to - from, 1), three do_step(from, to - from, true, &raw mut event, &raw mut terminate, &raw mut early, &raw mut last))?;
         if terminate {
@@ -387,11 +423,13 @@ impl ImportedFmuInstance {
         Ok(())
     }
 
-    /// Reads the numbers of a variable, as many as there is room for.
+    /// Reads a variable into as many numbers as it has elements.
+    /// Boolean values become 0 and 1. Texts cannot be read and give NaN.
     ///
     /// # Errors
     /// The unit refuses.
     pub fn get(&self, passed: FmuDataType, reference: u32, into: &mut [f64]) -> Result<(), FmuError> {
+        // FMI 3.0 takes one value reference for a whole array, and the number of its elements.
         let (r, n) = (&raw const reference, into.len());
         /// Reads into numbers of another type, then converts.
         macro_rules! read {
@@ -425,7 +463,7 @@ impl ImportedFmuInstance {
         Ok(())
     }
 
-    /// Sets the numbers of a variable; those of whole types are rounded.
+    /// Sets a variable from numbers. Integers are rounded, and any number but 0 counts as true.
     ///
     /// # Errors
     /// The unit refuses.
@@ -462,17 +500,18 @@ impl ImportedFmuInstance {
         }
     }
 
-    /// Sets a text.
+    /// Sets a text variable.
+    ///
     ///
     /// # Errors
-    /// The unit refuses.
+    /// The unit refuses, or the text contains a zero byte.
     pub fn set_text(&mut self, reference: u32, text: &str) -> Result<(), FmuError> {
         let text = CString::new(text).map_err(|_| "a text with a zero inside cannot be passed on")?;
         let (r, texts) = (&raw const reference, [text.as_ptr()]);
         call!(self, two set_string(r, 1, texts.as_ptr()), three set_string(r, 1, texts.as_ptr(), 1))
     }
 
-    /// Says where time stands (s), between events.
+    /// Sets the time of Model Exchange (s), between events.
     ///
     /// # Errors
     /// The unit refuses.
@@ -480,7 +519,7 @@ impl ImportedFmuInstance {
         call!(self, two set_time(time), three set_time(time))
     }
 
-    /// Sets the continuous states.
+    /// Sets the continuous states, in the order of the description.
     ///
     /// # Errors
     /// The unit refuses.
@@ -488,7 +527,7 @@ impl ImportedFmuInstance {
         call!(self, two set_states(x.as_ptr(), x.len()), three set_states(x.as_ptr(), x.len()))
     }
 
-    /// The continuous states.
+    /// Reads the continuous states, in the order of the description.
     ///
     /// # Errors
     /// The unit refuses.
@@ -496,7 +535,7 @@ impl ImportedFmuInstance {
         call!(self, two get_states(x.as_mut_ptr(), x.len()), three get_states(x.as_mut_ptr(), x.len()))
     }
 
-    /// Their derivatives.
+    /// Reads the derivatives of the continuous states.
     ///
     /// # Errors
     /// The unit refuses.
@@ -504,7 +543,7 @@ impl ImportedFmuInstance {
         call!(self, two get_derivatives(dx.as_mut_ptr(), dx.len()), three get_derivatives(dx.as_mut_ptr(), dx.len()))
     }
 
-    /// The numbers whose change of sign is an event.
+    /// Reads the event indicators. A change of sign is an event.
     ///
     /// # Errors
     /// The unit refuses.
@@ -512,17 +551,19 @@ impl ImportedFmuInstance {
         call!(self, two get_indicators(z.as_mut_ptr(), z.len()), three get_indicators(z.as_mut_ptr(), z.len()))
     }
 
-    /// How these variables change with one of the others.
+    /// Reads the derivatives of some variables by another one, all named by their value references.
     ///
     /// # Errors
     /// The unit refuses.
     pub fn directional(&self, unknowns: &[u32], known: u32, into: &mut [f64]) -> Result<(), FmuError> {
+        // The seed is 1, so that the product of the Jacobian with it is the derivative itself.
         let (n, known, seed) = (unknowns.len(), [known], [1.0]);
         let (u, k, s, to) = (unknowns.as_ptr(), known.as_ptr(), seed.as_ptr(), into.as_mut_ptr());
         call!(self, two directional(u, n, k, 1, s, to), three directional(u, n, k, 1, s, 1, to, n))
     }
 
-    /// Says that a step of the integrator ends here.
+    /// Tells the unit that a step of the integrator is completed.
+    /// What the unit answers is not needed: the caller enters event mode afterwards.
     ///
     /// # Errors
     /// The unit refuses.
@@ -531,7 +572,7 @@ impl ImportedFmuInstance {
         call!(self, two completed(1, &raw mut event, &raw mut terminate), three completed(true, &raw mut event3, &raw mut terminate3))
     }
 
-    /// Enters the mode in which discrete values change.
+    /// Enters event mode, in which discrete values may change.
     ///
     /// # Errors
     /// The unit refuses.
@@ -539,7 +580,7 @@ impl ImportedFmuInstance {
         call!(self, two enter_event(), three enter_event())
     }
 
-    /// Leaves it.
+    /// Enters continuous-time mode, which ends event mode and initialization.
     ///
     /// # Errors
     /// The unit refuses.
@@ -547,11 +588,12 @@ impl ImportedFmuInstance {
         call!(self, two enter_continuous(), three enter_continuous())
     }
 
-    /// One pass of the unit's event iteration.
+    /// Does one pass of the unit's event iteration.
     ///
     /// # Errors
     /// The unit refuses.
     pub fn update(&mut self) -> Result<DiscreteStateUpdate, FmuError> {
+        // Both versions write to variables of their own; only those of the unit's version are read.
         let mut info = EventInfo::default();
         let (mut again, mut terminate, mut nominals, mut values, mut defined) = (false, false, false, false, false);
         let mut next = 0.0;
@@ -583,7 +625,7 @@ impl Drop for ImportedFmuInstance {
     }
 }
 
-/// A sentence with what the unit said.
+/// An error from a sentence and the messages of the unit, which are taken away.
 fn with_words(sentence: String, said: &FmuMessages) -> FmuError {
     let lines = std::mem::take(&mut *said.lock().unwrap_or_else(PoisonError::into_inner));
     let lines: Vec<String> = lines.into_iter().filter(|l| !l.is_empty()).collect();

@@ -1,10 +1,11 @@
-//! Instances of a unit, each found by what was done to it.
+//! Instances of an FMU, each identified by what was done to it.
 //!
-//! To the equations a unit is a function: its state is a number, the fingerprint of all that was done since it was made,
-//! and each step gives the number of the next state. Nothing else is kept in the run, so that it can be repeated, resumed
-//! within the process, iterated at an event, branched for derivatives, and done many times at once. Here the numbers have
-//! instances behind them. An instance that stands where a run is serves at once; where there is none, one is made and does
-//! again what the number stands for.
+//! To the equations a unit is a pure function. Its state is a number: the fingerprint of all actions since it was made.
+//! Each step gives the number of the next state. A run stores nothing else, so it can be repeated, resumed within the
+//! process, iterated at an event, branched for derivatives, and executed many times at once.
+//!
+//! This module finds an instance for each number. An instance that is in the state serves at once. If there is none, a
+//! new one is made, and the actions since the root are repeated on it.
 
 use super::description::{FmuCausality, FmuDescription, FmuInterface};
 use super::native::ImportedFmuInstance;
@@ -12,27 +13,28 @@ use super::{FmuError, ImportedFmu};
 use rustc_hash::FxHashMap;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-/// Fingerprints are whole numbers that an `f64` holds.
+/// The number of bits of a fingerprint. Such integers are exact in an `f64`.
 const BITS: u32 = 52;
-/// Instances that stand ready at most; one that has not served for longest goes first.
+/// The largest number of idle instances. Beyond it the one that was used least recently is removed.
 const MOST_READY: usize = 32;
-/// Things done that are kept before those that no instance stands behind are forgotten.
+/// The number of recorded states at which those without an instance are forgotten.
 const MOST_KEPT: usize = 1 << 20;
-/// Passes of an event iteration at most.
+/// The largest number of passes of an event iteration.
 const MOST_PASSES: usize = 1000;
 
-/// What is done to an instance.
+/// An action on an instance, which leads from one state to the next.
 #[derive(Clone, Debug, PartialEq)]
 pub enum InstanceAction {
-    /// From a time to another (s), with these inputs.
+    /// A communication step between two times (s), with the inputs at its beginning.
     Step { from: f64, to: f64, inputs: Box<[f64]> },
-    /// An event at this time (s), with these states and inputs.
+    /// An event at a time (s), with the continuous states and inputs there.
     Event { time: f64, states: Box<[f64]>, inputs: Box<[f64]> },
 }
 
 impl InstanceAction {
-    /// The number of the state that it leads to.
+    /// The number of the state that the action leads to.
     fn after(&self, state: u64) -> u64 {
+        // The kind of action is a word too, so that a step and an event with equal numbers differ.
         let mut words = vec![state];
         match self {
             InstanceAction::Step { from, to, inputs } => {
@@ -48,8 +50,8 @@ impl InstanceAction {
     }
 }
 
-/// A whole number below 2 to the power of [`BITS`], and above 0. Each word is mixed as SplitMix64 does. Source: G. L. Steele,
-/// D. Lea, C. H. Flood, OOPSLA 2014.
+/// A hash of some words, a whole number from 1 to 2 to the power of [`BITS`], exclusive.
+/// Each word is mixed as in SplitMix64 (G. L. Steele, D. Lea, C. H. Flood, OOPSLA 2014).
 fn fingerprint(words: &[u64]) -> u64 {
     let mixed = words.iter().fold(words.len() as u64, |hash, word| {
         let z = (hash ^ word).wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -60,65 +62,72 @@ fn fingerprint(words: &[u64]) -> u64 {
     (mixed >> (64 - BITS)).max(1)
 }
 
-/// What came of an event.
+/// The result of an event.
 #[derive(Clone, Debug)]
 pub struct InstanceEventResult {
-    /// The state behind it.
+    /// The state after the event.
     pub state: u64,
-    /// The next event of known time (s).
+    /// The time of the next event that is known in advance (s).
     pub next: Option<f64>,
-    /// The continuous states.
+    /// The continuous states after the event.
     pub states: Vec<f64>,
 }
 
-/// An instance with what it is used for.
+/// An instance with the state that it is in.
 struct InstanceSlot {
+    /// The instance.
     instance: ImportedFmuInstance,
-    /// Where it stands.
+    /// The number of its state.
     state: u64,
-    /// When it entered initialization (s), while it is there.
+    /// The time at which it entered initialization mode (s). `None` in any other mode.
     initial: Option<f64>,
-    /// The inputs as they were set last.
+    /// The inputs that were set last, element by element. Empty if none were set.
     inputs: Vec<f64>,
 }
 
-/// Where a state comes from.
+/// How a state was reached.
 enum InstanceStateOrigin {
-    /// Parameters, as numbers.
+    /// The state of a new instance with these parameters, element by element.
     Root(Arc<[f64]>),
-    /// A state, and what was done.
+    /// Another state, and the action on it.
     Done(u64, Arc<InstanceAction>),
 }
 
+/// What changes as instances are used. A mutex guards it.
 #[derive(Default)]
 struct InstancePoolState {
+    /// Idle instances, the one used least recently first.
     ready: Vec<InstanceSlot>,
-    /// States at which instances are at work.
+    /// The states in which instances are in use. A state may occur several times.
     busy: Vec<u64>,
+    /// How each known state was reached.
     origins: FxHashMap<u64, InstanceStateOrigin>,
-    /// How many origins there may be before they are sifted.
+    /// The number of origins at which they are sifted next.
     most: usize,
 }
 
-/// All instances of a unit.
+/// All instances of one component's unit.
 pub struct InstancePool {
+    /// The unit.
     unit: Arc<ImportedFmu>,
-    /// Texts by the indices of their variables.
+    /// The values of text parameters, by the indices of their variables.
     texts: Vec<(usize, String)>,
-    /// The parameters, as indices of variables.
+    /// The parameters that can be set, as indices of variables.
     pub parameters: Vec<usize>,
     /// The inputs, as indices of variables.
     pub inputs: Vec<usize>,
     /// The outputs, as indices of variables.
     pub outputs: Vec<usize>,
+    /// The instances and states.
     shelf: Mutex<InstancePoolState>,
-    /// What went wrong last in any call.
+    /// The last failure of any call.
     failure: Mutex<Option<FmuError>>,
+    /// Signals that an instance in use was returned.
     returned: Condvar,
 }
 
 impl InstancePool {
-    /// Without instances as yet.
+    /// A pool without instances. The first call makes one.
     pub fn new(unit: Arc<ImportedFmu>, texts: Vec<(usize, String)>) -> Self {
         InstancePool {
             parameters: super::text::offered(&unit.description),
@@ -132,36 +141,37 @@ impl InstancePool {
         }
     }
 
-    /// Whether the unit computes directional derivatives.
+    /// True if the unit computes directional derivatives.
     pub fn has_derivatives(&self) -> bool {
         self.unit.offer.derivatives
     }
 
-    /// What the unit says of itself.
+    /// The content of the unit's `modelDescription.xml`.
     pub fn description(&self) -> &FmuDescription {
         &self.unit.description
     }
 
-    /// Notes what went wrong.
+    /// Records a failure.
     pub fn note(&self, why: &FmuError) {
         *self.failure.lock().unwrap_or_else(PoisonError::into_inner) = Some(why.clone());
     }
 
-    /// What went wrong last in any call.
+    /// The last failure of any call, as a sentence.
     pub fn failure(&self) -> Option<String> {
         self.failure.lock().unwrap_or_else(PoisonError::into_inner).as_ref().map(|why| self.words(why))
     }
 
-    /// As a sentence.
+    /// The sentence about a failure, with the name of the unit.
     pub fn words(&self, why: &FmuError) -> String {
         format!("the unit `{}`: {why}", self.description().name)
     }
 
+    /// Locks the instances. A panic in another thread leaves them consistent, so a poisoned lock is taken.
     fn shelf(&self) -> MutexGuard<'_, InstancePoolState> {
         self.shelf.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The state before anything is done, with these parameters.
+    /// The number of the state of a new instance with these parameters.
     pub fn root(&self, parameters: &[f64]) -> u64 {
         let words: Vec<u64> = parameters.iter().map(|x| x.to_bits()).collect();
         let root = fingerprint(&words);
@@ -169,18 +179,19 @@ impl InstancePool {
         root
     }
 
-    /// Whether nothing was done yet.
+    /// True if the state is that of a new instance.
     pub fn is_root(&self, state: u64) -> bool {
         matches!(self.shelf().origins.get(&state), Some(InstanceStateOrigin::Root(_)))
     }
 
-    /// Does something to a state: the state behind it.
+    /// Does a communication step from a state, and gives the number of the state after it.
     ///
     /// # Errors
-    /// The unit refuses.
+    /// The unit refuses, its path is forgotten, or two states have the same fingerprint.
     pub fn step(&self, state: u64, from: f64, to: f64, inputs: &[f64]) -> Result<u64, FmuError> {
         let act = InstanceAction::Step { from, to, inputs: inputs.into() };
         let after = act.after(state);
+        // The solver may ask for a step that was done already; then nothing is to be done.
         if !self.shelf().ready.iter().any(|s| s.state == after) {
             self.with(state, |slot, pool| pool.act(slot, &act))?;
         }
@@ -188,10 +199,10 @@ impl InstancePool {
         Ok(after)
     }
 
-    /// An event.
+    /// Handles an event in a state.
     ///
     /// # Errors
-    /// The unit refuses.
+    /// As for [`InstancePool::step`].
     pub fn event(
         &self,
         state: u64,
@@ -201,12 +212,13 @@ impl InstancePool {
     ) -> Result<InstanceEventResult, FmuError> {
         let act = InstanceAction::Event { time, states: states.into(), inputs: inputs.into() };
         let after = act.after(state);
+        // An event is always executed, because its results are wanted and not only the state.
         let (next, states) = self.with(state, |slot, pool| pool.act(slot, &act))?;
         self.shelf().note(after, state, act)?;
         Ok(InstanceEventResult { state: after, next, states })
     }
 
-    /// Looks at an instance that stands at a state, at a time (s) with these states and inputs.
+    /// Lets `see` read an instance in a state, at a time (s) with these continuous states and inputs.
     ///
     /// # Errors
     /// The unit refuses.
@@ -219,6 +231,8 @@ impl InstancePool {
         see: impl Fn(&mut ImportedFmuInstance) -> Result<T, FmuError>,
     ) -> Result<T, FmuError> {
         self.with(state, |slot, pool| {
+            // Before the start the instance is in initialization mode; later a unit of Co-Simulation is read as its
+            // step left it.
             if pool.is_root(slot.state) {
                 pool.initialize(slot, time)?;
                 pool.set_inputs(slot, inputs, true)?;
@@ -230,7 +244,7 @@ impl InstancePool {
         })
     }
 
-    /// Acts on an instance that stands at a state; one that refuses is used no more.
+    /// Runs `act` on an instance in a state. An instance whose call failed is dropped, as its state is unknown.
     fn with<T>(
         &self,
         state: u64,
@@ -248,20 +262,24 @@ impl InstancePool {
         done
     }
 
+    /// Takes an instance in a state out of the pool, or makes one. The caller must return it by `leave`.
     fn take(&self, state: u64) -> Result<InstanceSlot, FmuError> {
         let mut shelf = self.shelf();
         loop {
+            // The one used last is preferred, which keeps the order by use.
             if let Some(i) = shelf.ready.iter().rposition(|s| s.state == state) {
                 let slot = shelf.ready.remove(i);
                 shelf.busy.push(state);
                 return Ok(slot);
             }
+            // A process may hold only one instance of some units: wait until it is free.
             if !self.only_once() || shelf.busy.is_empty() {
                 break;
             }
             shelf = self.returned.wait(shelf).unwrap_or_else(PoisonError::into_inner);
         }
         let (root, parameters, acts) = shelf.path(state)?;
+        // An instance must go: the only one, or the oldest if there are too many. Making another one replaces it.
         let spare = if self.only_once() || shelf.ready.len() >= MOST_READY {
             (!shelf.ready.is_empty()).then(|| shelf.ready.remove(0))
         } else {
@@ -269,6 +287,7 @@ impl InstancePool {
         };
         shelf.busy.push(state);
         shelf.sift();
+        // Repeating the actions may take long and must not block other threads.
         drop(shelf);
         let made = self.make(spare, root, &parameters, &acts);
         if made.is_err() {
@@ -280,12 +299,14 @@ impl InstancePool {
         made
     }
 
+    /// True if the process can hold only one instance of the unit.
     fn only_once(&self) -> bool {
         self.unit.offer.only_once
     }
 
-    /// An instance with everything done to it again. A spare one is taken back to its beginning where the process cannot
-    /// hold another one, and else replaced: resetting is what units do worst.
+    /// Makes an instance in the state that the actions lead to, by repeating them.
+    /// A spare instance is reset only if the process cannot hold another one; else it is replaced by a new instance.
+    /// Many units implement resetting badly.
     fn make(
         &self,
         spare: Option<InstanceSlot>,
@@ -308,11 +329,11 @@ impl InstancePool {
         Ok(slot)
     }
 
-    /// Parameters and texts of an instance that is as it was made.
+    /// Sets the parameters and texts of a new instance.
     fn set_up(&self, slot: &mut InstanceSlot, parameters: &[f64]) -> Result<(), FmuError> {
         for (&i, value) in self.parameters.iter().zip(spread(self, &self.parameters, parameters)) {
             let v = &self.description().variables[i];
-            // what was not changed is left alone
+            // A unit may refuse to have some parameters set, even to the value that they have.
             if v.start != value {
                 slot.instance.set(v.passed, v.reference, &value)?;
             }
@@ -326,6 +347,8 @@ impl InstancePool {
         Ok(())
     }
 
+    /// Executes an action on an instance, and updates its state.
+    /// An event gives the time of the next one and the continuous states; a step gives neither.
     fn act(&self, slot: &mut InstanceSlot, act: &InstanceAction) -> Result<(Option<f64>, Vec<f64>), FmuError> {
         let at_root = self.is_root(slot.state);
         let found = match act {
@@ -334,6 +357,7 @@ impl InstancePool {
                     self.initialize(slot, *from)?;
                     self.set_inputs(slot, inputs, true)?;
                     slot.instance.exit_initialization()?;
+                    // Inputs are set again after initialization, as some units compute them anew when the mode ends.
                 }
                 self.set_inputs(slot, inputs, true)?;
                 slot.instance.step(*from, *to)?;
@@ -346,6 +370,8 @@ impl InstancePool {
                     slot.instance.exit_initialization()?;
                 } else {
                     slot.instance.set_time(*time)?;
+                    // The order of FMI: the step is completed in continuous-time mode, then discrete inputs are set in
+                    // event mode.
                     self.set_continuous(slot, states, inputs)?;
                     slot.instance.completed_step()?;
                     slot.instance.enter_event()?;
@@ -359,13 +385,15 @@ impl InstancePool {
         Ok(found)
     }
 
-    /// The unit's event iteration: the next event of known time, and the continuous states.
+    /// Executes the event iteration of the unit until it needs no further pass.
+    /// Gives the time of the next known event, and the continuous states. Those of a new instance are always read.
     fn iterate(
         &self,
         slot: &mut InstanceSlot,
         at_root: bool,
         states: &[f64],
     ) -> Result<(Option<f64>, Vec<f64>), FmuError> {
+        // After initialization the states are the unit's own.
         let mut changed = at_root;
         for _ in 0..MOST_PASSES {
             let update = slot.instance.update()?;
@@ -385,11 +413,12 @@ impl InstancePool {
         Err("its event iteration does not end".into())
     }
 
+    /// Puts a new instance into initialization mode at a time (s).
     fn initialize(&self, slot: &mut InstanceSlot, time: f64) -> Result<(), FmuError> {
         match slot.initial {
             Some(t) if t == time => Ok(()),
             Some(_) => {
-                // a run with another start time, or a derivative by it
+                // A run with another start time, or a derivative by it: the mode cannot be entered twice.
                 let (_, parameters, _) = self.shelf().path(slot.state)?;
                 if self.only_once() {
                     slot.instance.reset()?;
@@ -409,7 +438,8 @@ impl InstancePool {
         }
     }
 
-    /// Sets inputs that have changed; those with discrete values only where `all` may be set.
+    /// Sets the inputs that have changed. Discrete ones are set only with `all`, because FMI allows that in event mode
+    /// only.
     fn set_inputs(&self, slot: &mut InstanceSlot, inputs: &[f64], all: bool) -> Result<(), FmuError> {
         let before = spread(self, &self.inputs, &slot.inputs);
         for (k, (&i, value)) in self.inputs.iter().zip(spread(self, &self.inputs, inputs)).enumerate() {
@@ -421,7 +451,7 @@ impl InstancePool {
         if all {
             slot.inputs = inputs.to_vec();
         } else {
-            // discrete ones are as they were
+            // Discrete inputs keep the values that were set last.
             let continuous = self.inputs.iter().flat_map(|&i| {
                 let v = &self.description().variables[i];
                 std::iter::repeat_n(v.continuous, v.size())
@@ -435,6 +465,7 @@ impl InstancePool {
         Ok(())
     }
 
+    /// Sets the continuous states and continuous inputs, between events.
     fn set_continuous(&self, slot: &mut InstanceSlot, states: &[f64], inputs: &[f64]) -> Result<(), FmuError> {
         if !states.is_empty() {
             slot.instance.set_states(states)?;
@@ -442,7 +473,7 @@ impl InstancePool {
         self.set_inputs(slot, inputs, false)
     }
 
-    /// Reads variables one after the other.
+    /// Appends the values of variables, element by element, to `into`.
     ///
     /// # Errors
     /// The unit refuses.
@@ -462,7 +493,7 @@ impl InstancePool {
     }
 }
 
-/// Numbers by variable.
+/// Splits numbers into those of each variable. Missing numbers give empty or short parts.
 fn spread(pool: &InstancePool, variables: &[usize], numbers: &[f64]) -> Vec<Vec<f64>> {
     let mut rest = numbers;
     let mut part = |i: &usize| {
@@ -474,14 +505,17 @@ fn spread(pool: &InstancePool, variables: &[usize], numbers: &[f64]) -> Vec<Vec<
 }
 
 impl InstancePoolState {
-    /// One instance less is at work.
+    /// One instance less is in use in a state.
     fn leave(&mut self, state: u64) {
         if let Some(i) = self.busy.iter().position(|s| *s == state) {
             self.busy.swap_remove(i);
         }
     }
 
-    /// Notes where a state comes from.
+    /// Records how a state was reached.
+    ///
+    /// # Errors
+    /// The state is known with another origin: two states have the same fingerprint.
     fn note(&mut self, after: u64, before: u64, act: InstanceAction) -> Result<(), FmuError> {
         let origin =
             self.origins.entry(after).or_insert_with(|| InstanceStateOrigin::Done(before, Arc::new(act.clone())));
@@ -491,7 +525,10 @@ impl InstancePoolState {
         }
     }
 
-    /// What a state stands for: its root with the parameters there, and what was done since.
+    /// How a state was reached: the state of its root, the parameters there, and the actions since, in order.
+    ///
+    /// # Errors
+    /// The state is not known, as after a restart of the process.
     fn path(&self, mut state: u64) -> Result<(u64, Arc<[f64]>, Vec<Arc<InstanceAction>>), FmuError> {
         let mut acts = Vec::new();
         loop {
@@ -509,13 +546,15 @@ impl InstancePoolState {
         }
     }
 
-    /// Forgets what was done for runs of which no instance is left.
+    /// Forgets the origins of states that no instance leads back to. Roots are kept.
+    /// It runs only when there are many origins, and doubles the number at which it runs next.
     fn sift(&mut self) {
         if self.origins.len() < self.most.max(MOST_KEPT) {
             return;
         }
         let mut kept: FxHashMap<u64, InstanceStateOrigin> = FxHashMap::default();
         let standing: Vec<u64> = self.ready.iter().map(|s| s.state).chain(self.busy.iter().copied()).collect();
+        // Each state in use keeps all states on the way to it; a path that was kept already ends the loop.
         for mut state in standing {
             while let Some(origin) = self.origins.remove(&state) {
                 let before = match &origin {
