@@ -1,12 +1,15 @@
-//! Diagnostics as Python exceptions.
+//! Turns diagnostics into Python exceptions. All functions of the package that fail call [`raised`].
 
 use bramah::{Diagnostic, Severity, Sources};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// `bramah.Error` of what went wrong.
+/// The exception `bramah.Error` for an error: its message as the command prints it, and its diagnostics as
+/// dictionaries.
+/// If the exception itself cannot be made, the error of Python is returned.
 pub fn raised(py: Python<'_>, error: &bramah::Error) -> PyErr {
     let made = || -> PyResult<PyErr> {
+        // The class is defined in Python, so that users can catch and document it there.
         let class = py.import("bramah.errors")?.getattr("Error")?;
         let all: Vec<Bound<'_, PyDict>> =
             error.diagnostics.iter().map(|d| fields(py, d, &error.sources)).collect::<PyResult<_>>()?;
@@ -15,6 +18,7 @@ pub fn raised(py: Python<'_>, error: &bramah::Error) -> PyErr {
     made().unwrap_or_else(|other| other)
 }
 
+/// The fields of a diagnostic: code, severity, message, help, file and line. The last two are `None` without a place.
 fn fields<'py>(py: Python<'py>, diagnostic: &Diagnostic, sources: &Sources) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     let severity = match diagnostic.severity {
@@ -28,6 +32,7 @@ fn fields<'py>(py: Python<'py>, diagnostic: &Diagnostic, sources: &Sources) -> P
     dict.set_item("help", diagnostic.help.join("\n"))?;
     let place = diagnostic.labels.first().map(|label| {
         let source = sources.get(label.span.file);
+        // Lines count from 1.
         let line = 1 + source.text[..label.span.start as usize].matches('\n').count();
         (source.path.clone(), line)
     });

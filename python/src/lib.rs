@@ -1,5 +1,10 @@
-//! The compiled core of the Python package `bramah`: models, runs, studies. The classes that users see are in `bramah/*.py`
-//! and hold these; only here is the lock of the interpreter given up, and taken to ask whether the user pressed Ctrl-C.
+//! The compiled core of the Python package `bramah`: models, runs, steppers, studies.
+//!
+//! The classes that users see are in `bramah/*.py` and hold objects of this module. Values pass as tuples, lists,
+//! dictionaries and NumPy arrays.
+//! Only this module releases the interpreter's lock (GIL). During long work it takes the lock again now and then, to
+//! ask
+//! whether the user pressed Ctrl-C.
 
 mod errors;
 mod model;

@@ -1,4 +1,5 @@
-//! A compiled model.
+//! A compiled model as an object of Python. Texts or paths enter, a model leaves, whose methods run and analyse it.
+//! Values that are given with a call make a changed copy, so that a model never changes.
 
 use crate::errors::raised;
 use crate::run::{Plan, Run, Saved};
@@ -14,30 +15,36 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::{Arc, OnceLock};
 
-/// The name under which messages show a text without a file.
+/// The path by which messages show a text without a file.
 const TEXT: &str = "model.mo";
 
 /// A compiled model, with the values that were set.
 #[pyclass(frozen, module = "bramah._bramah", name = "Model")]
 #[derive(Clone)]
 pub struct Core {
+    /// The compiled model with its values.
     pub simulation: Simulation,
-    /// What can be set, looked up once for all models that differ in values only.
+    /// The parameters that can be set. They are looked up once, and shared by models that differ in values only.
     settable: Arc<OnceLock<Vec<bramah::Parameter>>>,
+    /// The text, if the model was compiled from one.
     text: Option<String>,
+    /// The request from which the model can be compiled again.
     request: Request,
 }
 
-/// A value as Python gives it: a number in the parameter's unit, or a text with a unit of its own.
+/// A value from Python: a number in the parameter's unit, or a text with a unit of its own or another expression.
 #[derive(FromPyObject, Clone)]
 pub enum Value {
+    /// `True` or `False`. It comes first, because Python converts Booleans to numbers.
     Flag(bool),
+    /// A number in the unit of the parameter.
     Number(f64),
+    /// An expression or a number with a unit, as a modifier would have it.
     Text(String),
 }
 
 impl Value {
-    /// As `--set` takes it.
+    /// The text that the compiler takes, as after the command's option `--set`.
     fn text(&self) -> String {
         match self {
             Value::Flag(flag) => flag.to_string(),
@@ -47,12 +54,15 @@ impl Value {
     }
 }
 
-/// Name, unit, unit for people, description, kind, literals.
+/// A variable for Python: name, unit, display unit, description, kind, and the literals of an enumeration.
 pub type Quantity = (String, String, String, String, &'static str, Vec<String>);
-/// Text, source, class, libraries, values: what makes a model.
+/// The parts from which a model is compiled: text, source, class, libraries, and values by name.
 type Recipe = (Option<String>, String, Option<String>, Vec<String>, Vec<(String, String)>);
+/// A parameter: quantity, value, smallest and largest value, whether it is structural, whether it is of the model
+/// itself.
 type Parameter = (Quantity, f64, Option<f64>, Option<f64>, bool, bool);
 
+/// The description of a signal for Python.
 pub fn quantity_of(signal: Signal) -> Quantity {
     let (kind, literals) = match signal.kind {
         Kind::Real => ("Real", Vec::new()),
@@ -63,7 +73,7 @@ pub fn quantity_of(signal: Signal) -> Quantity {
     (signal.name, signal.unit, signal.display_unit, signal.description, kind, literals)
 }
 
-/// Compiles; a text lies over the files of the disk.
+/// Compiles a model. A text is laid over the files of the disk, so that it can use them.
 fn compiled(text: Option<&String>, request: &Request) -> Result<Simulation, Error> {
     match text {
         Some(text) => {
@@ -75,12 +85,13 @@ fn compiled(text: Option<&String>, request: &Request) -> Result<Simulation, Erro
 }
 
 impl Core {
+    /// Compiles a model.
     fn new(text: Option<String>, request: Request) -> Result<Self, Error> {
         let simulation = compiled(text.as_ref(), &request)?;
         Ok(Core { simulation, settable: Arc::default(), text, request })
     }
 
-    /// The same with other values: without compiling again where that is possible.
+    /// A copy with other values. It is compiled again only if that is necessary.
     fn with(&self, values: &[(String, Value)]) -> Result<Self, Error> {
         let mut changed = self.clone();
         let parameters = self.settable.get_or_init(|| self.simulation.parameters());
@@ -88,35 +99,38 @@ impl Core {
         for (name, value) in values {
             let parameter = parameters.iter().find(|p| p.signal.name == *name);
             let number = parameter.filter(|p| !p.structural).and_then(|p| number(value, &p.signal));
+            // The first value that needs the compiler makes it necessary for all; those already set do no harm.
             match number {
                 Some(number) => drop(changed.simulation.set(name, number)?),
                 None => again = true,
             }
         }
-        // what makes this model again, for pickling and for values that need the compiler
+        // The request must make this model again, for pickling and for values that need the compiler.
         let overrides = &mut changed.request.overrides;
         overrides.retain(|o| !values.iter().any(|(name, _)| *name == o.name));
         overrides.extend(values.iter().map(|(n, v)| Override { name: n.clone(), value: v.text() }));
         if again {
-            // names of arrays, texts, structural parameters and inputs go through the compiler, as `--set` does
+            // Names of arrays, texts, structural parameters and inputs go through the compiler, as with `--set`.
             return Core::new(self.text.clone(), changed.request);
         }
         Ok(changed)
     }
 
-    /// With values and trajectories of inputs, ready to run.
+    /// A copy with values and settings of a run.
     fn ready(&self, values: &[(String, Value)], plan: &Plan) -> Result<Simulation, Error> {
         let mut simulation = self.with(values)?.simulation;
         plan.apply(&mut simulation)?;
         Ok(simulation)
     }
 
+    /// Diagnostics as the command prints them.
     fn messages_of(&self, diagnostics: &[Diagnostic]) -> String {
         full(self.simulation.sources(), diagnostics)
     }
 }
 
-/// A value in the unit of a quantity, where it is a number; the compiler says what is wrong with any other.
+/// The number in the unit of a quantity. `None` if the value needs the compiler, which also reports what is wrong with
+/// it.
 fn number(value: &Value, signal: &Signal) -> Option<f64> {
     match value {
         Value::Flag(flag) => (signal.kind == Kind::Boolean).then(|| f64::from(u8::from(*flag))),
@@ -125,7 +139,7 @@ fn number(value: &Value, signal: &Signal) -> Option<f64> {
             let (number, unit) = quantity(text).ok()?;
             let Some(unit) = unit else { return (signal.kind == Kind::Real).then_some(number) };
             if unit.offset != 0.0 {
-                // a temperature or a difference: the compiler knows the parameter's type
+                // A temperature or a temperature difference: only the compiler knows which of them the parameter is.
                 return None;
             }
             unit.convert(number, &MeasurementUnit::parse(&signal.unit).ok()?)
@@ -146,6 +160,7 @@ impl Core {
         libraries: Vec<String>,
         overrides: Vec<(String, String)>,
     ) -> PyResult<Self> {
+        // A text has a path of its own, whatever the caller names.
         let source = if text.is_some() { TEXT.into() } else { source.into() };
         let overrides = overrides.into_iter().map(|(name, value)| Override { name, value }).collect();
         let libraries = libraries.into_iter().map(Into::into).collect();
@@ -261,7 +276,7 @@ impl Core {
         let found = py.detach(|| {
             let simulation = self.with(&values)?.simulation;
             let state = simulation.steady(&simulation.state_at(at)?)?;
-            // the state holds what the search moved; a moment of a run computes all that follows from it
+            // The state has only what the search changed. A very short run computes everything that follows from it.
             let mut after = simulation.clone();
             after.settings().stop_time = state.time + MOMENT;
             after.settings().interval = MOMENT;
@@ -289,6 +304,7 @@ impl Core {
         dict.set_item("time", PyArray1::from_slice(py, &found.plain.times))?;
         for ((name, size), columns) in found.parameters.iter().zip(found.columns) {
             let of = PyDict::new(py);
+            // Columns are scaled by the parameter's size, and Python gets derivatives by the parameter itself.
             for (signal, column) in found.plain.signals.iter().zip(columns) {
                 let by_unit: Vec<f64> = column.iter().map(|v| v / size).collect();
                 of.set_item(&signal.name, PyArray1::from_vec(py, by_unit))?;
@@ -311,5 +327,5 @@ impl Core {
     }
 }
 
-/// Seconds over which values at a steady state are computed.
+/// The duration of the run that computes the values at a steady state (s).
 const MOMENT: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! Runs and their results.
+//! Runs and their results: settings from Python enter, arrays and texts leave.
 
 use crate::errors::raised;
 use crate::model::{Quantity, quantity_of};
@@ -12,31 +12,37 @@ use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 
-/// Calls of the solver's progress between two looks whether the user pressed Ctrl-C.
+/// The number of progress calls of the solver between two checks for Ctrl-C. Each check takes the GIL.
 const LOOK: u32 = 16;
 
-/// How a run is to go.
+/// The settings of a run, from a dictionary of Python. `None` keeps the setting of the model.
 #[derive(FromPyObject)]
 pub struct Plan {
+    /// Start time (s).
     #[pyo3(item)]
     start: Option<f64>,
+    /// Stop time (s).
     #[pyo3(item)]
     stop: Option<f64>,
+    /// Output interval (s).
     #[pyo3(item)]
     interval: Option<f64>,
+    /// Relative tolerance.
     #[pyo3(item)]
     tolerance: Option<f64>,
+    /// True if rows before and after events are wanted.
     #[pyo3(item)]
     event_rows: Option<bool>,
+    /// Patterns of the variables to be recorded. Empty for all that change.
     #[pyo3(item)]
     outputs: Vec<String>,
-    /// Name, times, values, held until the next sample.
+    /// Inputs: name, times (s), values, and whether a value is held until the next sample.
     #[pyo3(item)]
     inputs: Vec<(String, Vec<f64>, Vec<f64>, bool)>,
 }
 
 impl Plan {
-    /// Gives a simulation its settings and inputs.
+    /// Sets the settings and inputs of a simulation.
     pub fn apply(&self, simulation: &mut Simulation) -> Result<(), Error> {
         let settings = simulation.settings();
         if let Some(start) = self.start {
@@ -44,6 +50,7 @@ impl Plan {
         }
         if let Some(stop) = self.stop {
             settings.stop_time = stop;
+            // As the command does: 500 intervals, unless the interval is given too.
             settings.interval = (stop - settings.start_time) / 500.0;
         }
         if let Some(interval) = self.interval {
@@ -62,7 +69,8 @@ impl Plan {
         self.record(simulation)
     }
 
-    /// Patterns choose among the variables that change; a plain name may also be a parameter.
+    /// Selects the variables to be recorded.
+    /// Patterns select among those that change. A plain name may also be a parameter.
     fn record(&self, simulation: &mut Simulation) -> Result<(), Error> {
         if self.outputs.is_empty() {
             simulation.record_variables();
@@ -74,10 +82,12 @@ impl Plan {
             let globs = GlobPatterns::new(&[pattern]);
             let before = chosen.len();
             chosen.extend(all.iter().map(String::as_str).filter(|n| globs.matches(n)));
+            // No match: the name of a parameter, or a misspelt one, which `record` reports.
             if chosen.len() == before {
                 chosen.push(pattern);
             }
         }
+        // A variable that several patterns select is recorded once.
         let mut seen = std::collections::BTreeSet::new();
         chosen.retain(|name| seen.insert(*name));
         simulation.record(&chosen).map(drop)
@@ -87,6 +97,7 @@ impl Plan {
 /// Where a run ended, to go on from.
 #[pyclass(frozen, module = "bramah._bramah", name = "State")]
 pub struct Saved {
+    /// The state, with the values of all variables.
     pub state: State,
 }
 
@@ -122,20 +133,28 @@ impl Saved {
 /// A result.
 #[pyclass(frozen, module = "bramah._bramah", name = "Run")]
 pub struct Run {
+    /// The signals of the columns.
     signals: Vec<Signal>,
+    /// The times of the rows (s).
     time: Py<PyArray1<f64>>,
+    /// One array for each signal.
     columns: Vec<Py<PyArray1<f64>>>,
+    /// How the run ended.
     end: End,
+    /// The state at the end.
     state: State,
+    /// The warnings of the run as text.
     messages: String,
+    /// Counts and times of the work.
     statistics: bramah::Statistics,
 }
 
 impl Run {
+    /// The result of a run. `sources` are the texts that its diagnostics refer to.
     pub fn new(py: Python<'_>, outcome: Outcome, sources: &Sources) -> Self {
         let Outcome { trajectory, end, state, statistics, diagnostics } = outcome;
         let messages = full(sources, &diagnostics);
-        // the vectors become the arrays: nothing is copied
+        // The vectors become the arrays without being copied.
         let array = |v: Vec<f64>| PyArray1::from_vec(py, v).unbind();
         Run {
             signals: trajectory.signals,
@@ -148,7 +167,10 @@ impl Run {
         }
     }
 
-    /// Runs without the interpreter's lock, which is taken now and then for Ctrl-C and progress.
+    /// Executes a run without the GIL, which is taken now and then for Ctrl-C and to call `show` with the time.
+    ///
+    /// # Errors
+    /// The run fails, or `show` raises an exception. After Ctrl-C the result has the rows so far.
     pub fn of(
         py: Python<'_>,
         simulation: &Simulation,
@@ -166,6 +188,7 @@ impl Run {
                     py.check_signals()?;
                     show.as_ref().map_or(Ok(()), |show| show.call1(py, (now.time,)).map(drop))
                 });
+                // `false` ends the run.
                 asked.map_err(|error| stopped = Some(error)).is_ok()
             };
             let mut control = Control { progress: Some(&mut progress), ..Control::default() };
@@ -174,7 +197,7 @@ impl Run {
         let outcome = outcome.map_err(|e| raised(py, &e))?;
         let is_interrupt = |e: &PyErr| e.is_instance_of::<pyo3::exceptions::PyKeyboardInterrupt>(py);
         match stopped {
-            // what there is is kept: the result says that it is not complete
+            // After Ctrl-C the rows so far are kept; `end` shows that the result is not complete.
             Some(error) if !is_interrupt(&error) => return Err(error),
             None if !outcome.end.is_success() => {
                 let sources = std::sync::Arc::new(simulation.sources().clone());
@@ -185,6 +208,7 @@ impl Run {
         Ok(Run::new(py, outcome, simulation.sources()))
     }
 
+    /// The result as a trajectory; the arrays are copied.
     fn trajectory(&self, py: Python<'_>) -> PyResult<Trajectory> {
         let mut trajectory = Trajectory::new(self.signals.clone());
         trajectory.times = self.time.bind(py).to_vec()?;
@@ -275,6 +299,7 @@ impl Run {
         let io = |e: std::io::Error| PyOSError::new_err(e.to_string());
         let trajectory = self.trajectory(py)?;
         let mut signals = trajectory.signals.clone();
+        // Here units are part of the names.
         if units {
             signals.iter_mut().filter(|s| !s.unit.is_empty()).for_each(|s| s.name = format!("{} [{}]", s.name, s.unit));
         }

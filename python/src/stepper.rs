@@ -1,4 +1,4 @@
-//! A run that is taken from step to step.
+//! A run that Python advances step by step, setting inputs and reading variables in between (co-simulation).
 
 use crate::errors::raised;
 use crate::run::Saved;
@@ -7,32 +7,38 @@ use pyo3::prelude::*;
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The run, with inputs and variables looked up once.
+/// The run, with the handles of inputs and variables that were used before.
 struct Inner {
+    /// The run, which owns its simulation.
     run: OwnedStepping,
+    /// The handle of each input by its name.
     inputs: HashMap<String, InputPort>,
+    /// The handle of each variable by its name.
     probes: HashMap<String, Probe>,
 }
 
 /// A run that is taken from step to step.
 #[pyclass(frozen, module = "bramah._bramah", name = "Stepper")]
 pub struct Core {
+    /// A mutex, because Python may call from several threads.
     inner: Mutex<Inner>,
 }
 
 impl Core {
+    /// Begins a run, from a saved state or from the initial values.
     pub fn begin(py: Python<'_>, simulation: Simulation, from: Option<State>) -> PyResult<Self> {
         let run = py.detach(|| OwnedStepping::new(simulation, from.as_ref())).map_err(|e| raised(py, &e))?;
         Ok(Core { inner: Mutex::new(Inner { run, inputs: HashMap::new(), probes: HashMap::new() }) })
     }
 
-    /// A thread that panicked has left the run as it was before its step.
+    /// Locks the run. A panic in another thread has left it as it was before its step, so a poisoned lock is taken.
     fn inner(&self) -> MutexGuard<'_, Inner> {
         self.inner.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 impl Inner {
+    /// The handle of an input, which is looked up by name once.
     fn input(&mut self, name: &str) -> Result<InputPort, Error> {
         if let Some(port) = self.inputs.get(name) {
             return Ok(*port);
@@ -42,6 +48,7 @@ impl Inner {
         Ok(port)
     }
 
+    /// The handle of a variable, which is looked up by name once.
     fn probe(&mut self, name: &str) -> Result<Probe, Error> {
         if let Some(probe) = self.probes.get(name) {
             return Ok(*probe);
@@ -62,8 +69,10 @@ impl Core {
 
     /// Sets inputs, goes on by so many seconds.
     fn step(&self, py: Python<'_>, seconds: f64, inputs: Vec<(String, f64)>) -> PyResult<()> {
+        // Without the GIL: a step may take long.
         let stepped = py.detach(|| {
             let mut inner = self.inner();
+            // All inputs are set before the step, so that they change at one time.
             for (name, value) in &inputs {
                 let port = inner.input(name)?;
                 inner.run.with(|run| run.set(port, *value));

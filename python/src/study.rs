@@ -1,4 +1,6 @@
-//! Parameters from recordings, and the diagnosis.
+//! Parameter estimation and diagnosis from recordings. A study file and its recordings enter, by their paths or as
+//! texts
+//! from Python; reports leave, as JSON, text and HTML.
 
 #![allow(clippy::disallowed_methods, reason = "notes how long a diagnosis took")]
 
@@ -13,7 +15,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Duration;
 
-/// Files that Python holds, over those of the disk.
+/// A world with files that Python holds in memory, laid over those of the disk.
 fn world(files: Vec<(String, String)>) -> Overlay<'static> {
     let mut held = MemoryWorld::default();
     files.into_iter().for_each(|(path, text)| held.add(path, text));
@@ -50,7 +52,7 @@ pub fn identify(
     Ok((json, found.words, messages))
 }
 
-/// What a diagnosis came to: JSON verdict, words, HTML report, corrected model, warnings.
+/// The result of a diagnosis: verdict as JSON, text, report as HTML, corrected model if there is one, warnings.
 type Found = (String, String, String, Option<String>, String);
 
 /// Diagnoses; `progress` hears of each stage.
@@ -66,6 +68,7 @@ pub fn diagnose(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Found> {
     let begun = std::time::Instant::now();
+    // A negative, infinite or zero time is refused.
     let positive = |seconds: f64| Duration::try_from_secs_f64(seconds).ok().filter(|t| !t.is_zero());
     let no_time = || PyValueError::new_err("the budget must be a time above zero, s");
     let time = budget.map(|seconds| positive(seconds).ok_or_else(no_time)).transpose()?;
@@ -73,6 +76,7 @@ pub fn diagnose(
     let work = || -> Result<Found, Error> {
         let world = world(files);
         let mut show = |stage: Stage| {
+            // Called between stages, so that Ctrl-C ends the diagnosis.
             let asked = Python::attach(|py| {
                 py.check_signals()?;
                 progress.as_ref().map_or(Ok(()), |p| p.call1(py, (stage.to_string(),)).map(drop))
@@ -85,6 +89,7 @@ pub fn diagnose(
                 }
             }
         };
+        // The time is measured here, because crates below the command read no clock.
         let gone = || begun.elapsed();
         let budget = Some(Budget { time, gone: &gone });
         let options = DiagnoseOptions { data: data.as_deref().map(Path::new), budget, effect: effect.as_deref() };
@@ -97,6 +102,7 @@ pub fn diagnose(
     };
     let found = py.detach(|| pooled(work));
     match stopped {
+        // An exception of Python takes precedence over the error that the stop has caused.
         Some(error) => Err(error),
         None => found.map_err(|e| raised(py, &e)),
     }

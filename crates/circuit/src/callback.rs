@@ -17,12 +17,14 @@ pub(super) struct CallbackStatus {
 impl CallbackStatus {
     /// Calls it; true when the run may go on.
     pub fn call(&mut self, callback: impl FnOnce() -> bool) -> bool {
+        // A panic must not unwind through the C code of the integrator.
         match catch_unwind(AssertUnwindSafe(callback)) {
             Ok(go_on) => {
                 self.stopped |= !go_on;
                 go_on
             }
             Err(payload) => {
+                // The payload of `panic!` is a `String` or a `&str`.
                 let text = payload.downcast_ref::<String>().cloned();
                 let text = text.or_else(|| payload.downcast_ref::<&str>().map(ToString::to_string));
                 self.panic = Some(text.unwrap_or_else(|| "no message".to_owned()));

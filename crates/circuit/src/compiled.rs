@@ -37,6 +37,7 @@ impl CompiledModel {
     pub fn with_values(&self, values: &[(VarId, f64)]) -> Result<CompiledModel, Vec<Diagnostic>> {
         let mut flat = FlatModel::clone(&self.flat);
         for &(v, value) in values {
+            // The value becomes the binding, as if it had been written in the text.
             flat.variables[v.index()].binding = Some(flat.exprs.num(value));
         }
         let sorted = analyze(&flat);
@@ -58,6 +59,7 @@ pub fn compile(
         let system = Arc::new(lower::lower(dae.clone(), options));
         CompiledModel { flat: Arc::new(flat), graph, dae, system }
     });
+    // Messages of all stages in the order of their places.
     sort_messages(&mut diagnostics);
     CompileOutcome { sources, diagnostics, value: model }
 }

@@ -28,7 +28,9 @@ pub struct Exchange<'a> {
 
 impl<'a> Exchange<'a> {
     pub(super) fn new(simulation: &'a Simulation) -> Result<Self, Error> {
+        // The caller integrates the states of the model, not quantities that are conserved in their place.
         let system = simulation.system_of_states();
+        // Some models cannot leave the integration to others; the reason comes from the solver.
         if let Some(why) = exchange::refuses(system) {
             let d = Diagnostic::new(Code::Unsupported, format!("the model cannot be integrated by others: {why}"));
             return Err(simulation.errors(vec![d]));
@@ -112,8 +114,8 @@ impl<'a> Exchange<'a> {
         self.inner.value(probe.0).map_err(|stop| self.simulation.errors(stop.diagnostics))
     }
 
-    /// Does what is due: where indicators have changed their sign since the last event, where a known time is reached, and
-    /// where inputs have changed.
+    /// Does what is due: where indicators have changed their sign since the last event, where a known time is reached,
+    /// and where inputs have changed.
     ///
     /// # Errors
     /// As a run that ends there.

@@ -121,8 +121,10 @@ impl Circuit {
     pub fn set(&mut self, parameter: impl Into<String>, value: impl ToString) -> &mut Self {
         let (parameter, value) = (parameter.into(), value.to_string());
         match self.components.last_mut() {
+            // A unit of its own is no Modelica; the compiler converts it, since it knows the unit of the parameter.
             Some(c) if is_quantity(&value) => c.quantities.push((parameter, value)),
             Some(c) => c.modifiers.push(format!("{parameter} = {value}")),
+            // Reported by `compile`, so that calls can be chained without results.
             None => self.astray.push(parameter),
         }
         self
@@ -151,7 +153,8 @@ impl Circuit {
         self
     }
 
-    /// The circuit as Modelica text. Values with units of their own are remarks in it: they are given when it is compiled.
+    /// The circuit as Modelica text.
+    /// Values with units of their own are comments in it: they are given when it is compiled.
     pub fn text(&self) -> String {
         let mut text = format!("model {}\n", self.name);
         for line in self.declarations.lines() {
@@ -161,6 +164,7 @@ impl Circuit {
             let list = if modifiers.is_empty() { String::new() } else { format!("({})", modifiers.join(", ")) };
             let _ = writeln!(text, "  {prefix}{class} {name}{list};");
             for (parameter, value) in quantities {
+                // As a comment, which shows the value without changing the text that is compiled.
                 let _ = writeln!(text, "  // {name}.{parameter} = {value}");
             }
         }
@@ -169,6 +173,7 @@ impl Circuit {
             let _ = writeln!(text, "  connect({a}, {b});");
         }
         for e in &self.equations {
+            // The caller may have written the semicolon or not.
             let _ = writeln!(text, "  {};", e.trim_end_matches(';'));
         }
         let _ = writeln!(text, "end {};", self.name);
@@ -195,6 +200,7 @@ impl Circuit {
         let request = Request {
             source: file.into(),
             model: Some(self.name.clone()),
+            // Values with units are given like those of the command's option `--set`.
             overrides: self.components.iter().flat_map(given).collect(),
             ..Request::default()
         };

@@ -1,4 +1,4 @@
-//! A run under way together with the simulation that it reads: for callers that keep it, as those of other languages do.
+//! A run under way together with the simulation that it reads, for callers that keep it, such as other languages.
 
 use super::{Exchange, Simulation, Stepping};
 use bramah_solve::State;
@@ -7,6 +7,7 @@ use bramah_syntax::diag::Error;
 self_cell::self_cell!(
     struct SteppingCell {
         owner: Simulation,
+        // The run borrows the simulation for its own lifetime, which must not be shortened.
         #[not_covariant]
         dependent: Stepping,
     }
@@ -35,6 +36,7 @@ impl OwnedStepping {
 self_cell::self_cell!(
     struct ExchangeCell {
         owner: Simulation,
+        // As for `SteppingCell`.
         #[not_covariant]
         dependent: Exchange,
     }

@@ -12,8 +12,9 @@ use bramah_syntax::diag::Error;
 pub struct Parameter {
     /// Name, units, description and type.
     pub signal: Signal,
-    /// Its value in the next run, in its unit. Booleans are 0 or 1, enumerations the number of their literal. One that is
-    /// found at the start stands at its guess.
+    /// The value in the next run, in the parameter's unit. Booleans are 0 or 1, enumerations the number of their
+    /// literal.
+    /// A parameter that is computed at the start has its guess here.
     pub value: f64,
     /// The smallest value allowed, in its unit.
     pub min: Option<f64>,
@@ -60,6 +61,7 @@ impl Simulation {
     pub fn start_of(&self, name: &str) -> Result<f64, Error> {
         let v = self.variable(name)?;
         let model = self.model();
+        // A constant start value in the text counts; else the guess from which initialization begins.
         let own = model.flat.variables[v.index()].binding.and_then(|b| model.flat.exprs.as_num(b));
         Ok(own.unwrap_or_else(|| solve::guesses(&model.system, self.run_settings())[model.system.layout.var(v)]))
     }

@@ -46,9 +46,13 @@ impl Outcome {
 /// parallel.
 #[derive(Clone, Debug)]
 pub struct Simulation {
+    /// The compiled model. Clones share it.
     model: CompiledModel,
+    /// The texts that diagnostics refer to.
     sources: Arc<Sources>,
+    /// The settings of the run.
     settings: Settings,
+    /// The inputs that were given, one entry for each.
     inputs: Vec<RecordedInput>,
     /// For callers who integrate the states themselves: without conserved quantities among the unknowns.
     of_states: Arc<OnceLock<ExecutableSystem>>,
@@ -62,6 +66,7 @@ impl Simulation {
     /// # Errors
     /// The diagnostics of the first stage that finds something wrong.
     pub fn compile(world: &dyn World, request: &Request) -> Result<Self, Error> {
+        // On a stack of its own size: names and expressions of a model may nest deeply.
         let outcome = deep(|| compile(world, request, &lower::LoweringOptions::default()));
         let sources = Arc::new(outcome.sources);
         match outcome.value {
@@ -124,6 +129,7 @@ impl Simulation {
     /// Sets the time at which the run ends, in seconds, with 500 output intervals.
     pub fn stop_time(&mut self, seconds: f64) -> &mut Self {
         self.settings.stop_time = seconds;
+        // The same number of intervals as without a stop time: 500.
         self.settings.interval = (seconds - self.settings.start_time) / 500.0;
         self
     }
@@ -131,8 +137,8 @@ impl Simulation {
     /// Changes a parameter without compiling again; the value is in the parameter's unit.
     ///
     /// # Errors
-    /// `E023` when there is no such parameter, or when the structure of the model depends on it; `E215` when the value is
-    /// no number or outside `min` and `max`.
+    /// `E023` if there is no such parameter, or if the structure of the model depends on it.
+    /// `E215` if the value is no number, or outside `min` and `max`.
     pub fn set(&mut self, name: &str, value: f64) -> Result<&mut Self, Error> {
         let v = self.variable(name)?;
         let variable = &self.model.dae.variables[v.index()];
@@ -144,6 +150,7 @@ impl Simulation {
                 return Err(self.error(d));
             }
             Variability::Constant => {
+                // Its value has determined the number of equations, or was folded into them.
                 let d = Diagnostic::new(Code::BadSet, format!("the structure of the model depends on `{name}`"));
                 return Err(self.error(d.help("give its value when the model is compiled")));
             }
@@ -153,6 +160,7 @@ impl Simulation {
             }
         }
         self.check_range(name, v, value)?;
+        // A value that was set before is replaced.
         self.settings.parameters.retain(|(p, _)| *p != v);
         self.settings.parameters.push((v, value));
         Ok(self)
@@ -160,6 +168,7 @@ impl Simulation {
 
     /// Limits that depend on other parameters are those of their present values.
     fn check_range(&self, name: &str, v: VarId, value: f64) -> Result<(), Error> {
+        // NaN passes no comparison, so that the limits would accept it.
         if value.is_nan() {
             return Err(self.error(Diagnostic::new(Code::OutOfRange, format!("the value of `{name}` is not a number"))));
         }
@@ -175,6 +184,7 @@ impl Simulation {
         let system = &self.model.system;
         let mut values = system.layout.values();
         let mut given = vec![false; self.model.dae.variables.len()];
+        // Parameters that were set keep their values; those that depend on them are computed anew.
         for &(p, value) in &self.settings.parameters {
             values[system.layout.var(p)] = value;
             given[p.index()] = true;
@@ -191,6 +201,7 @@ impl Simulation {
     /// `E023` when there is no such parameter.
     pub fn get(&self, name: &str) -> Result<f64, Error> {
         let v = self.variable(name)?;
+        // Parameters and constants have one value; anything else changes during a run.
         if self.model.dae.variables[v.index()].variability > Variability::Parameter {
             let d = Diagnostic::new(Code::BadSet, format!("`{name}` is not a parameter"));
             return Err(self.error(d.help("its values are in the trajectory of a run")));
@@ -214,9 +225,11 @@ impl Simulation {
         if !self.model.dae.inputs.contains(&variable) {
             return Err(self.not_an_input(name));
         }
+        // Equal times would be a jump, whose side is not defined for an input between samples.
         if times.len() != values.len() || times.is_empty() || times.windows(2).any(|w| w[1] <= w[0]) {
             return Err(self.error(bad(format!("the samples for `{name}` need growing times, one for each value"))));
         }
+        // An input that was given before is replaced.
         self.inputs.retain(|i| i.variable != variable);
         let (times, values) = (Arc::from(times), Arc::from(values));
         self.inputs.push(RecordedInput { variable, times, values, interpolation: between });
@@ -310,6 +323,7 @@ impl Simulation {
         if let Some(complaint) = rows.conduct.complaint(run.time) {
             return Err(self.error(complaint));
         }
+        // A stop that the callback requested is a regular end.
         if !(run.end.is_success() || run.end == End::Interrupted && rows.conduct.stopped) {
             return Err(self.errors(run.diagnostics));
         }
@@ -343,6 +357,7 @@ impl Simulation {
     /// The model with nothing but its states to integrate.
     pub(super) fn system_of_states(&self) -> &ExecutableSystem {
         let system = &self.model.system;
+        // The system of the model then integrates nothing but its states.
         if system.integrals.is_empty() {
             return system;
         }
@@ -368,6 +383,7 @@ impl Simulation {
 
     /// Every input has a value: one given, its own, or that of the state from which the run goes on.
     fn may_run(&self, from: Option<&State>) -> Result<(), Error> {
+        // A state contains the values of all inputs.
         if from.is_some() {
             return Ok(());
         }
@@ -388,6 +404,7 @@ impl Simulation {
         sink: &mut dyn RowSink,
     ) -> Result<RunResult, Error> {
         let mut conduct = CallbackStatus::default();
+        // If the chosen states become singular during the run, the model is analysed again with other states.
         let mut reselect = |choice: &StateChoice| self.model.with_states(choice);
         let mut watched = control.progress.as_mut().map(|report| {
             let conduct = &mut conduct;
@@ -396,6 +413,7 @@ impl Simulation {
         let progress = watched.as_mut().map(|report| report as &mut (dyn FnMut(&Progress) -> bool + Send));
         let mut control = Control { interrupt: control.interrupt, progress, reselect: Some(&mut reselect) };
         let run = solve::simulate(&self.model.system, &self.settings, &self.inputs, from, sink, &mut control);
+        // The error of a callback takes precedence over the end that it has caused.
         match conduct.complaint(run.time) {
             Some(complaint) => Err(self.error(complaint)),
             None => Ok(run),

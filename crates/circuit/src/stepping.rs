@@ -54,9 +54,13 @@ pub struct Probe(pub(super) usize);
 /// # }
 /// ```
 pub struct Stepping<'a> {
+    /// The compiled model and its settings.
     simulation: &'a Simulation,
+    /// The run.
     driver: Driver<'a, 'a>,
+    /// Inputs that were set since the last step: slot and new value.
     changes: Vec<(usize, f64)>,
+    /// The message of the model, once it has ended the run.
     terminated: Option<String>,
 }
 
@@ -90,6 +94,7 @@ impl Simulation {
 impl<'a> Stepping<'a> {
     pub(super) fn new(simulation: &'a Simulation, from: Option<&State>) -> Result<Self, Error> {
         let (system, settings) = (&simulation.model().system, simulation.run_settings());
+        // Values are assigned by position, which is only right for a state of the same model.
         if let Some(state) = from.filter(|s| !s.fits(system)) {
             let text = format!("the state of another model cannot be taken: it has {} variables", state.names.len());
             return Err(simulation.errors(vec![Diagnostic::new(Code::BadArgument, text)]));
@@ -123,6 +128,7 @@ impl<'a> Stepping<'a> {
 
     /// Sets an input, in its unit, from here on.
     pub fn set(&mut self, input: InputPort, value: f64) {
+        // Of several values for one input the last one counts.
         self.changes.retain(|(slot, _)| *slot != input.0);
         self.changes.push((input.0, value));
     }
@@ -145,6 +151,7 @@ impl<'a> Stepping<'a> {
     /// # Errors
     /// As [`Stepping::step`]; `E901` for a time that lies behind or is not finite.
     pub fn step_to(&mut self, time: f64) -> Result<(), Error> {
+        // After `terminate` the time stands still and steps have no effect.
         if self.terminated.is_some() {
             return Ok(());
         }
@@ -152,12 +159,14 @@ impl<'a> Stepping<'a> {
             let text = format!("a step from {} s to {time} s", self.time());
             return Err(self.simulation.errors(vec![Diagnostic::new(Code::BadArgument, text)]));
         }
+        // Taken out for the call and put back, so that the list keeps its memory.
         let changes = std::mem::take(&mut self.changes);
         let moved = self.driver.advance(&changes, time);
         self.changes = changes;
         self.changes.clear();
         match moved {
             Ok(()) => Ok(()),
+            // The model has ended the run itself, which is no error.
             Err(EarlyStop { end: End::Terminated(message), .. }) => {
                 self.terminated = Some(message);
                 Ok(())

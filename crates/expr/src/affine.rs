@@ -47,6 +47,7 @@ impl Exprs {
 
     /// A node as affine expression, from those of its operands. At least one operand contains the leaf.
     /// `None` if the node is not affine in it.
+    /// Products and quotients are affine only if the other operand is free of the leaf.
     fn affine_node(&mut self, node: ExprId, parts: &FxHashMap<ExprId, AffineForm>) -> Option<AffineForm> {
         let of = |e: ExprId| parts.get(&e).copied().unwrap_or(AffineForm { coefficient: Self::ZERO, rest: e });
         let free = |e: ExprId| !parts.contains_key(&e);
@@ -55,6 +56,7 @@ impl Exprs {
             ExprNode::Binary(op @ (BinaryFunction::Add | BinaryFunction::Sub), a, b) => {
                 Some(self.each_part(of(a), of(b), |pool, x, y| pool.binary(op, x, y)))
             }
+            // The factor that is free of the leaf multiplies both parts.
             ExprNode::Binary(BinaryFunction::Mul, a, b) if free(b) => {
                 Some(self.each_part(of(a), of(a), |pool, x, _| pool.mul(x, b)))
             }
@@ -72,6 +74,7 @@ impl Exprs {
     }
 
     /// Applies an operation to the coefficients and to the rests of two affine expressions.
+    /// `change` builds one part from the parts of both operands.
     fn each_part(
         &mut self,
         a: AffineForm,

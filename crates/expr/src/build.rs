@@ -10,6 +10,7 @@
 use super::math;
 use super::{BinaryFunction, ExprId, ExprNode, Exprs, RelationalOp, UnaryFunction};
 
+/// Constructors of nodes. Each gives the id of a node with the value described, which may be simpler than asked for.
 impl Exprs {
     /// `-a`. The sign of a difference, or of a product with a number, is absorbed.
     pub fn neg(&mut self, a: ExprId) -> ExprId {
@@ -75,6 +76,7 @@ impl Exprs {
     }
 
     /// `a - b`. Subtracting a negative becomes an addition.
+    /// `x - x` is 0.
     pub fn sub(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if b == Self::ZERO {
             return a;
@@ -96,6 +98,7 @@ impl Exprs {
     }
 
     /// `a*b`. Signs of the factors move to the front.
+    /// A factor 0 makes the product 0, whatever the other factor is.
     pub fn mul(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == Self::ZERO || b == Self::ZERO {
             return Self::ZERO;
@@ -124,6 +127,7 @@ impl Exprs {
     }
 
     /// `a/b`. Signs of both operands move to the front.
+    /// A numerator 0 makes the quotient 0, unless the denominator is the number 0.
     pub fn div(&mut self, a: ExprId, b: ExprId) -> ExprId {
         // `0/0` is not simplified, so that the run reports it.
         if b == Self::ONE || (a == Self::ZERO && b != Self::ZERO) {
@@ -144,6 +148,7 @@ impl Exprs {
     }
 
     /// `a^b`. The exponents 0 and 1, and the base 1, are simplified.
+    /// Powers with small integer exponents are computed as products.
     pub fn pow(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if b == Self::ZERO || a == Self::ONE {
             return Self::ONE;
@@ -155,11 +160,13 @@ impl Exprs {
     }
 
     /// The smaller of two values.
+    /// Two numbers give a number.
     pub fn min(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == b { a } else { self.folded(BinaryFunction::Min, a, b) }
     }
 
     /// The larger of two values.
+    /// Two numbers give a number.
     pub fn max(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == b { a } else { self.folded(BinaryFunction::Max, a, b) }
     }
@@ -170,6 +177,7 @@ impl Exprs {
     }
 
     /// `a and b`.
+    /// Known operands are dropped or decide the result.
     pub fn and(&mut self, a: ExprId, b: ExprId) -> ExprId {
         match (self.as_num(a), self.as_num(b)) {
             (Some(0.0), _) | (_, Some(0.0)) => Self::ZERO,
@@ -199,6 +207,7 @@ impl Exprs {
     }
 
     /// A function of two arguments by its name, simplified.
+    /// Rewriting passes use it to rebuild nodes.
     pub fn binary(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         match op {
             BinaryFunction::Add => self.add(a, b),
@@ -215,6 +224,7 @@ impl Exprs {
     }
 
     /// A function of one argument by its name, simplified.
+    /// Rewriting passes use it to rebuild nodes.
     pub fn unary(&mut self, op: UnaryFunction, a: ExprId) -> ExprId {
         match op {
             UnaryFunction::Neg => return self.neg(a),
@@ -258,17 +268,20 @@ impl Exprs {
         if self.as_num(a).is_some() { self.floor(a) } else { self.intern(ExprNode::EventFloor(a)) }
     }
 
+    /// Known relations become numbers.
     /// A relation that makes no event.
     pub fn rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> ExprId {
         self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(ExprNode::Rel(rel, a, b)))
     }
 
+    /// Known relations become numbers, which never change.
     /// A relation whose change is an event.
     pub fn event_rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> ExprId {
         self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(ExprNode::EventRel(rel, a, b)))
     }
 
     /// The value of a relation between equal operands or numbers. `None` if it is not known.
+    /// Both kinds of relations use it.
     fn known_rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> Option<ExprId> {
         // An operand that becomes NaN would make the relation false; this is ignored.
         if a == b {
@@ -298,11 +311,13 @@ impl Exprs {
     }
 
     /// `sample(start, interval)`: true at `start + k*interval`, in s.
+    /// Both operands are parameter expressions.
     pub fn sample(&mut self, start: ExprId, interval: ExprId) -> ExprId {
         self.intern(ExprNode::Sample(start, interval))
     }
 
     /// `delay(a, time)`. A number is its own delayed value.
+    /// The time is in s.
     pub fn delay(&mut self, a: ExprId, time: ExprId) -> ExprId {
         match self.node(a) {
             ExprNode::Num(_) => a,
@@ -311,6 +326,7 @@ impl Exprs {
     }
 
     /// The square of `a`, as a power.
+    /// Powers with the exponent 2 are computed as products.
     pub fn square(&mut self, a: ExprId) -> ExprId {
         let two = self.num(2.0);
         self.pow(a, two)
@@ -331,6 +347,7 @@ impl Exprs {
     }
 
     /// The negative of `op(a, b)`.
+    /// It moves a sign out of a product or quotient.
     fn negated(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         let positive = self.binary(op, a, b);
         self.neg(positive)
@@ -343,6 +360,7 @@ impl Exprs {
     }
 
     /// `op(a, b)`, as a number if possible.
+    /// It is for functions without further simplification.
     fn folded(&mut self, op: BinaryFunction, a: ExprId, b: ExprId) -> ExprId {
         self.fold(op, a, b).unwrap_or_else(|| self.intern(ExprNode::Binary(op, a, b)))
     }

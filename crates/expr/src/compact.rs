@@ -26,6 +26,7 @@ impl Exprs {
     }
 
     /// Adds a node of the old pool to this one. `place` has the new ids of its operands.
+    /// All nodes that it refers to must have been copied before.
     fn copied(&mut self, from: &Exprs, e: ExprId, place: &[ExprId]) -> ExprId {
         let to = |e: ExprId| place[e.index()];
         let node = match from.node(e) {

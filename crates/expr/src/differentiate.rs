@@ -100,6 +100,7 @@ impl Exprs {
 }
 
 /// The derivative of a node from those of its operands. Leaves count as constant.
+/// `memo` has the derivatives of all operands.
 fn node_derivative(pool: &mut Exprs, e: ExprId, memo: &FxHashMap<ExprId, ExprId>) -> ExprId {
     // The rules take `None` for a zero, and then build nothing for it.
     let of = |a: ExprId| Some(memo[&a]).filter(|&d| d != Exprs::ZERO);
@@ -116,6 +117,7 @@ fn node_derivative(pool: &mut Exprs, e: ExprId, memo: &FxHashMap<ExprId, ExprId>
 }
 
 /// The chain rule for a call: the sum over the arguments of the function's derivative times the argument's.
+/// Each argument with a derivative adds one call of the derivative function by that input.
 fn call_derivative(
     pool: &mut Exprs,
     function: FunctionId,

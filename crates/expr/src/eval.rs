@@ -34,6 +34,7 @@ impl EvaluationCache {
     fn finish(&mut self, pool: &Exprs, e: ExprId, leaf: &mut impl FnMut(ExprNode) -> f64) -> bool {
         let node = pool.node(e);
         let value = match node {
+            // The condition is needed first, as it decides which branch is evaluated.
             ExprNode::If(c, a, b) => {
                 let Some(&c) = self.values.get(&c) else {
                     self.stack.push(c);
@@ -47,6 +48,7 @@ impl EvaluationCache {
             ExprNode::Time | ExprNode::Var(_) | ExprNode::Der(_) | ExprNode::Pre(_) => Some(leaf(node)),
             ExprNode::Sample(..) | ExprNode::Initial | ExprNode::Terminal => Some(leaf(node)),
             _ => {
+                // Unknown operands are pushed, and the node is tried again once they are known.
                 let operands = pool.operands(e);
                 let missing = operands.as_slice().iter().rev().filter(|operand| !self.values.contains_key(operand));
                 let before = self.stack.len();
@@ -61,6 +63,7 @@ impl EvaluationCache {
     }
 
     /// The value of a node, which is pushed to be computed first if it is not known.
+    /// `None` if it was pushed.
     fn known(&mut self, e: ExprId) -> Option<f64> {
         let value = self.values.get(&e).copied();
         if value.is_none() {
@@ -70,6 +73,7 @@ impl EvaluationCache {
     }
 
     /// The value of a node from those of its operands.
+    /// All operands must be known.
     fn combine(&self, pool: &Exprs, e: ExprId) -> f64 {
         let of = |a: ExprId| self.values[&a];
         match pool.node(e) {

@@ -45,11 +45,13 @@ fn build(pool: &mut Exprs, tree: &Expr, find: &dyn Fn(&str) -> VarId) -> ExprId 
 }
 
 /// The first identifier of a reference. Names in tests have no dots.
+/// The name of a function or variable.
 fn name(reference: &ComponentReference) -> &'static str {
     reference.parts[0].name.name.as_str()
 }
 
 /// An infix operator. Relations make events, as in a model.
+/// Element-wise operators are not known here.
 fn binary(pool: &mut Exprs, op: BinaryOp, a: ExprId, b: ExprId) -> ExprId {
     let rel = match op {
         BinaryOp::Lt => RelationalOp::Lt,
@@ -72,6 +74,7 @@ fn binary(pool: &mut Exprs, op: BinaryOp, a: ExprId, b: ExprId) -> ExprId {
 }
 
 /// A call of a built-in function.
+/// `function` is the name before the bracket.
 fn call(pool: &mut Exprs, function: &str, args: &[Expr], find: &dyn Fn(&str) -> VarId) -> ExprId {
     if let ("der" | "pre", ExprKind::Reference(reference)) = (function, &args[0].kind) {
         let v = find(name(reference));

@@ -44,6 +44,7 @@ pub enum CallFailure {
     },
 }
 
+// Messages show these texts, with indices counted from 1 as in Modelica.
 impl std::fmt::Display for CallFailure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
@@ -73,6 +74,7 @@ impl Function {
 }
 
 /// How a list of statements ended.
+/// Statements return it, so that loops and calls know whether to continue.
 enum ExecutionFlow {
     /// At its end.
     Next,
@@ -93,6 +95,7 @@ struct Interpreter<'a> {
 }
 
 /// The state of one active function.
+/// Slots are private to it: recursive calls have frames of their own.
 struct StackFrame<'a> {
     /// The function.
     function: &'a Function,
@@ -102,6 +105,9 @@ struct StackFrame<'a> {
 
 impl<'a> Interpreter<'a> {
     /// Calls a function. `result` gets the index and value of each output.
+    ///
+    /// # Errors
+    /// The call, or one inside it, has no value.
     fn call(
         &mut self,
         function: &'a Function,
@@ -153,6 +159,7 @@ impl<'a> Interpreter<'a> {
     }
 
     /// Executes one statement.
+    /// Compound statements return the flow of their bodies.
     fn statement(&mut self, frame: &mut StackFrame<'a>, stmt: &'a SlotStatement) -> Result<ExecutionFlow, CallFailure> {
         match stmt {
             SlotStatement::Assign(slot, value) => frame.slots[*slot as usize] = self.term(frame, value)?,
@@ -196,6 +203,7 @@ impl<'a> Interpreter<'a> {
     }
 
     /// Executes a `for` loop over the range `from`, `step`, `to`.
+    /// The bounds are evaluated once. `break` in the body ends the loop only.
     fn count(
         &mut self,
         frame: &mut StackFrame<'a>,
@@ -224,6 +232,7 @@ impl<'a> Interpreter<'a> {
     }
 
     /// Executes a `while` loop.
+    /// The condition is evaluated before each turn.
     fn repeat(
         &mut self,
         frame: &mut StackFrame<'a>,
@@ -242,6 +251,7 @@ impl<'a> Interpreter<'a> {
     }
 
     /// The function of an id.
+    /// The id must be one of the pool from which `all` comes.
     fn function(&self, id: FunctionId) -> &'a Function {
         &self.all[id.0 as usize]
     }
@@ -252,6 +262,7 @@ impl<'a> Interpreter<'a> {
     }
 
     /// The value of an expression.
+    /// Operands are evaluated from left to right; of an `if` only the branch that is taken.
     fn term(&mut self, frame: &StackFrame<'a>, term: &'a SlotExpr) -> Result<f64, CallFailure> {
         Ok(match term {
             SlotExpr::Num(value) => *value,
@@ -295,6 +306,7 @@ impl<'a> Interpreter<'a> {
     ///
     /// # Errors
     /// The offset is not in `0..len`. NaN is not either.
+    /// `base` and `len` are the slots of the array.
     fn element(
         &mut self,
         frame: &StackFrame<'a>,

@@ -214,6 +214,7 @@ impl Hash for ExprNode {
 }
 
 /// The hash of a node in the index of the pool.
+/// The same function hashes nodes in the table and nodes that are looked up.
 fn hash(node: &ExprNode) -> u64 {
     FxBuildHasher.hash_one(node)
 }
@@ -340,6 +341,7 @@ impl Exprs {
     }
 
     /// The node of a variable that is not in `leaves` yet.
+    /// Small indices enter the table, so that the next request is a single access.
     fn new_leaf(&mut self, v: VarId) -> ExprId {
         let (e, known) = (self.intern(ExprNode::Var(v)), self.leaves.len());
         // Locals of functions have very large indices, for which the table would become too long. They are found by
@@ -368,6 +370,7 @@ impl Exprs {
     }
 
     /// The range of an argument list, which is added if it is new.
+    /// Argument lists are never removed.
     fn intern_args(&mut self, args: &[ExprId]) -> ArgumentRange {
         if let Some(&a) = self.arg_index.get(args) {
             return a;

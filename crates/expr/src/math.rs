@@ -25,6 +25,7 @@ pub const LARGEST_WHOLE_POWER: i32 = 16;
 
 impl PowerMethod {
     /// The method for an exponent. Native code that knows the exponent may write the same operations in line.
+    /// Both ways give the same bits.
     pub fn of(exponent: f64) -> PowerMethod {
         if exponent == 0.5 {
             PowerMethod::Sqrt
@@ -155,6 +156,7 @@ pub extern "C" fn floor(x: f64) -> f64 {
 
 /// The first value if it is not above the second, else the second. NaN if either is NaN.
 pub extern "C" fn min(a: f64, b: f64) -> f64 {
+    // With NaN on either side a comparison is false; NaN must come out on both sides.
     if a <= b || a.is_nan() { a } else { b }
 }
 
@@ -169,6 +171,7 @@ pub fn truth(value: bool) -> f64 {
 }
 
 /// The value of an operator or function of one argument.
+/// `not` gives 0 or 1.
 pub fn unary(op: UnaryFunction, x: f64) -> f64 {
     match op {
         UnaryFunction::Neg => -x,
@@ -193,6 +196,7 @@ pub fn unary(op: UnaryFunction, x: f64) -> f64 {
 }
 
 /// The value of an operator or function of two arguments.
+/// Boolean operators give 0 or 1.
 pub fn binary(op: BinaryFunction, a: f64, b: f64) -> f64 {
     match op {
         BinaryFunction::Add => a + b,

@@ -60,6 +60,7 @@ impl Exprs {
     }
 
     /// Prints until all is written, or the limit is exceeded.
+    /// It takes pieces from the stack one by one.
     fn print_within(&self, e: ExprId, names: &dyn Fn(VarId) -> String, digits: Option<usize>, limit: usize) -> String {
         let mut printer = ExprPrinter { pool: self, names, digits, todo: vec![], text: String::new() };
         printer.todo.push(PrintPiece::Expr(e, bind::WHOLE, false));
@@ -94,6 +95,7 @@ impl ExprPrinter<'_> {
     }
 
     /// The pieces of one node's text, and its precedence.
+    /// `truth` is true if the value is a Boolean one.
     fn pieces(&self, e: ExprId, truth: bool) -> (u8, Vec<PrintPiece>) {
         use PrintPiece::{Expr, Name, Text};
         let name = |v: VarId| Name((self.names)(v));
@@ -111,6 +113,7 @@ impl ExprPrinter<'_> {
             ExprNode::EventFloor(a) => call("floor", &[a]),
             ExprNode::Binary(op, a, b) => binary(op, a, b),
             ExprNode::Rel(rel, a, b) | ExprNode::EventRel(rel, a, b) => {
+                // Relations with and without event look alike.
                 let sign = match rel {
                     RelationalOp::Lt => " < ",
                     RelationalOp::Le => " <= ",
@@ -145,6 +148,7 @@ impl ExprPrinter<'_> {
     }
 
     /// A number, or a Boolean value if `truth` is true. A negative number binds like a sum.
+    /// `truth` is true where the number stands for a Boolean value.
     fn number(&self, value: f64, truth: bool) -> (u8, Vec<PrintPiece>) {
         if truth {
             return (bind::PRIMARY, vec![PrintPiece::Text(if value == 0.0 { "false" } else { "true" })]);
@@ -154,7 +158,7 @@ impl ExprPrinter<'_> {
     }
 }
 
-/// Comma-separated arguments and the closing bracket.
+/// The arguments separated by commas, and the closing bracket.
 fn arguments(pieces: &mut Vec<PrintPiece>, args: &[ExprId]) {
     for (i, &arg) in args.iter().enumerate() {
         if i > 0 {
@@ -166,6 +170,7 @@ fn arguments(pieces: &mut Vec<PrintPiece>, args: &[ExprId]) {
 }
 
 /// A call with its arguments, and its precedence.
+/// The arguments need no brackets, as commas separate them.
 fn call(name: &'static str, args: &[ExprId]) -> (u8, Vec<PrintPiece>) {
     let mut pieces = vec![PrintPiece::Text(name), PrintPiece::Text("(")];
     arguments(&mut pieces, args);
@@ -193,6 +198,7 @@ fn binary(op: BinaryFunction, a: ExprId, b: ExprId) -> (u8, Vec<PrintPiece>) {
 }
 
 /// The Modelica name of an operator or function of one argument.
+/// `Neg` and `Not` are prefix operators.
 fn unary_name(op: UnaryFunction) -> &'static str {
     match op {
         UnaryFunction::Neg => "-",

@@ -53,6 +53,7 @@ pub(super) trait ExprAlgebra {
 
 /// The derivative of `y = op(x)`, from that of `x`. `None` if it is 0.
 /// Rules use `y` where they can, because its value is computed anyway.
+/// `k` builds the expressions.
 pub(super) fn unary<A: ExprAlgebra>(k: &mut A, op: UnaryFunction, x: &A::E, y: &A::E, dx: A::E) -> Option<A::E> {
     let x = x.clone();
     let y = y.clone();
@@ -72,22 +73,26 @@ pub(super) fn unary<A: ExprAlgebra>(k: &mut A, op: UnaryFunction, x: &A::E, y: &
             let double = k.mul(two, y);
             k.div(dx, double)
         }
+        // The derivative of the exponential is its value, which is known.
         UnaryFunction::Exp => k.mul(y, dx),
         UnaryFunction::Log => k.div(dx, x),
         UnaryFunction::Log10 => {
             let ten = k.num(std::f64::consts::LN_10);
             let below = k.mul(ten, x);
+            // d log10(x) = dx / (x log(10)).
             k.div(dx, below)
         }
         UnaryFunction::Sin => {
             let slope = k.unary(UnaryFunction::Cos, x);
             k.mul(slope, dx)
         }
+        // d cos(x) = -sin(x) dx.
         UnaryFunction::Cos => {
             let slope = k.unary(UnaryFunction::Sin, x);
             let product = k.mul(slope, dx);
             k.neg(product)
         }
+        // d tan(x) = (1 + tan(x)^2) dx, from the value of the node.
         UnaryFunction::Tan => {
             let slope = k.one_and_square(BinaryFunction::Add, y);
             k.mul(slope, dx)
@@ -109,6 +114,7 @@ pub(super) fn unary<A: ExprAlgebra>(k: &mut A, op: UnaryFunction, x: &A::E, y: &
             let slope = k.unary(UnaryFunction::Sinh, x);
             k.mul(slope, dx)
         }
+        // d tanh(x) = (1 - tanh(x)^2) dx, from the value of the node.
         UnaryFunction::Tanh => {
             let slope = k.one_and_square(BinaryFunction::Sub, y);
             k.mul(slope, dx)
@@ -124,6 +130,7 @@ fn arc<A: ExprAlgebra>(k: &mut A, x: A::E, dx: A::E) -> A::E {
 }
 
 /// The derivative of `y = op(a, b)`, from those of `a` and `b`. `None` if it is 0.
+/// Operands without a derivative contribute no term.
 pub(super) fn binary<A: ExprAlgebra>(
     k: &mut A,
     op: BinaryFunction,
@@ -154,11 +161,13 @@ pub(super) fn binary<A: ExprAlgebra>(
         BinaryFunction::Atan2 => Some(angle(k, a, b, da, db)),
         BinaryFunction::Min => Some(chosen(k, RelationalOp::Le, a, b, da, db)),
         BinaryFunction::Max => Some(chosen(k, RelationalOp::Ge, a, b, da, db)),
+        // Their values are 0 or 1 and have no slope.
         BinaryFunction::And | BinaryFunction::Or => None,
     }
 }
 
 /// The sum of two derivatives, where `None` is 0.
+/// `None` if both are 0.
 pub(super) fn sum<A: ExprAlgebra>(k: &mut A, a: Option<A::E>, b: Option<A::E>) -> Option<A::E> {
     match (a, b) {
         (Some(a), Some(b)) => Some(k.add(a, b)),
@@ -197,6 +206,7 @@ fn power_by_exponent<A: ExprAlgebra>(k: &mut A, a: &A::E, y: &A::E, db: A::E) ->
 }
 
 /// `(x*dy - y*dx) / (x^2 + y^2)`, the derivative of `atan2(y, x)`.
+/// The value itself is not needed.
 fn angle<A: ExprAlgebra>(k: &mut A, y: &A::E, x: &A::E, dy: Option<A::E>, dx: Option<A::E>) -> A::E {
     let rise = dy.map(|dy| k.mul(x.clone(), dy));
     let fall = dx.map(|dx| {
@@ -212,6 +222,7 @@ fn angle<A: ExprAlgebra>(k: &mut A, y: &A::E, x: &A::E, dy: Option<A::E>, dx: Op
 }
 
 /// The derivative of `min` or `max`: that of `a` if `a rel b`, else that of `b`.
+/// A missing derivative counts as 0, because the other side may be taken.
 fn chosen<A: ExprAlgebra>(
     k: &mut A,
     rel: RelationalOp,
@@ -227,6 +238,7 @@ fn chosen<A: ExprAlgebra>(
 }
 
 /// `if c then da else db`. `None` if both derivatives are 0.
+/// A missing derivative on one side counts as 0. The condition is not differentiated.
 pub(super) fn branch<A: ExprAlgebra>(k: &mut A, c: A::E, da: Option<A::E>, db: Option<A::E>) -> Option<A::E> {
     if da.is_none() && db.is_none() {
         return None;

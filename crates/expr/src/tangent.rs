@@ -13,6 +13,7 @@ use super::{BinaryFunction, Exprs, FunctionId, RelationalOp, UnaryFunction, math
 impl Exprs {
     /// The function that takes the inputs of `f` and returns the derivatives of all its outputs by one input.
     /// It is built once for each input.
+    /// The body is one call of the tangent function.
     pub fn derivative_function(&mut self, f: FunctionId, input: u32) -> FunctionId {
         if let Some(&known) = self.partials.get(&(f, input)) {
             return known;
@@ -44,6 +45,7 @@ impl Exprs {
     /// The tangent function of `f`: it takes the inputs, then a tangent for each, and returns the tangents of the
     /// outputs.
     /// It is built once.
+    /// A function carried out in Rust has tangents from its `partial` functions.
     pub fn tangent_function(&mut self, f: FunctionId) -> FunctionId {
         if let Some(&known) = self.tangents.get(&f) {
             return known;
@@ -95,6 +97,7 @@ impl TangentLayout {
 }
 
 /// Transforms the body of one function.
+/// Borrowing the pool allows it to make the tangent functions of callees on the way.
 struct TangentTransform<'a> {
     /// The pool, to which tangent functions of callees are added.
     pool: &'a mut Exprs,
@@ -104,6 +107,7 @@ struct TangentTransform<'a> {
 
 impl TangentTransform<'_> {
     /// The transformed statements, in order.
+    /// Each statement becomes one or two.
     fn statements(&mut self, body: &[SlotStatement]) -> Vec<SlotStatement> {
         let mut out = Vec::new();
         for stmt in body {
@@ -153,6 +157,7 @@ impl TangentTransform<'_> {
     }
 
     /// A call, preceded by one of the tangent function.
+    /// Outputs that are dropped have no tangent either.
     fn call(&mut self, function: FunctionId, args: &[SlotExpr], outputs: &[Option<u32>], out: &mut Vec<SlotStatement>) {
         let tangent = self.pool.tangent_function(function);
         let changes = outputs.iter().map(|slot| slot.map(|slot| self.layout.tangent(slot))).collect();
@@ -168,6 +173,7 @@ impl TangentTransform<'_> {
     }
 
     /// The arguments of a tangent function: values, then tangents.
+    /// The order is that of [`TangentLayout`].
     fn with_tangents(&mut self, args: &[SlotExpr]) -> Vec<SlotExpr> {
         let mut both: Vec<SlotExpr> = args.iter().map(|arg| self.value(arg)).collect();
         for arg in args {
@@ -177,6 +183,7 @@ impl TangentTransform<'_> {
     }
 
     /// The expression itself, over the new slots.
+    /// Its slots are renumbered, and nothing else changes.
     fn value(&self, term: &SlotExpr) -> SlotExpr {
         let layout = self.layout;
         match term {
@@ -199,21 +206,23 @@ impl TangentTransform<'_> {
     }
 
     /// An element of an array at a new base.
+    /// The offset is that of the original.
     fn element(&self, base: u32, len: u32, offset: &SlotExpr) -> SlotExpr {
         SlotExpr::At { base, len, offset: Box::new(self.value(offset)) }
     }
 
     /// The tangent of an expression, as a number if it is 0.
+    /// Assignments need a value even if it is 0.
     fn tangent_or_zero(&mut self, term: &SlotExpr) -> SlotExpr {
         self.tangent(term).unwrap_or(SlotExpr::Num(0.0))
     }
 
     /// The tangent of an expression. `None` if it is always 0.
-    // An index does not depend on the inputs in a differentiable way.
     fn tangent(&mut self, term: &SlotExpr) -> Option<SlotExpr> {
         match term {
             SlotExpr::Num(_) | SlotExpr::Rel(..) => None,
             SlotExpr::Slot(slot) => Some(SlotExpr::Slot(self.layout.tangent(*slot))),
+            // An index does not depend on the inputs in a differentiable way.
             SlotExpr::At { base, len, offset } => Some(self.element(self.layout.tangent(*base), *len, offset)),
             SlotExpr::Unary(op, a) => {
                 let da = self.tangent(a)?;
@@ -250,6 +259,7 @@ impl TangentTransform<'_> {
 }
 
 /// Builds expressions over slots, and drops neutral elements as the pool does.
+/// It keeps the programs small, since most tangents have many factors 0 and 1.
 struct SlotExprBuilder;
 
 impl ExprAlgebra for SlotExprBuilder {

@@ -7,6 +7,7 @@ use super::{ExprId, ExprNode, Exprs, VarId};
 use rustc_hash::{FxBuildHasher, FxHashMap, FxHashSet};
 
 /// The operands of one node. Up to three are stored here, those of a call are borrowed from the pool.
+/// It avoids an allocation for each node.
 #[derive(Clone, Copy, Debug)]
 pub struct NodeOperands<'a> {
     /// The operands of nodes that are no calls.
@@ -75,6 +76,7 @@ impl NodeTraversal {
 
 impl Exprs {
     /// The operands of a node. Leaves have none.
+    /// For an `if` they are the condition and both branches; for a call its arguments.
     pub fn operands(&self, e: ExprId) -> NodeOperands<'_> {
         let none = Self::ZERO;
         let (few, len) = match self.node(e) {
@@ -99,6 +101,7 @@ impl Exprs {
     }
 
     /// The same node with its operands replaced by `change`, simplified. Leaves stay as they are.
+    /// `change` is called once for each operand, in order.
     pub fn with_operands(&mut self, e: ExprId, mut change: impl FnMut(ExprId) -> ExprId) -> ExprId {
         match self.node(e) {
             ExprNode::Unary(op, a) => self.unary(op, change(a)),
@@ -138,6 +141,7 @@ impl Exprs {
     }
 
     /// The number of distinct nodes of an expression.
+    /// Shared nodes count once.
     pub fn node_count(&self, e: ExprId) -> usize {
         self.reachable(&[e], |_| true).len()
     }
@@ -172,6 +176,7 @@ impl Exprs {
     }
 
     /// True if `part` occurs in `e`, or is `e`.
+    /// The search stops as soon as the part is found.
     pub fn contains(&self, e: ExprId, part: ExprId) -> bool {
         let mut found = false;
         self.reachable(&[e], |node| {

@@ -46,10 +46,12 @@ impl TableCurve {
     }
 
     /// The smallest abscissa.
+    /// Tables give it as `minimumAbscissa`.
     pub fn from(&self) -> f64 {
         self.starts[0]
     }
 
+    /// Tables give it as `maximumAbscissa`.
     /// The largest abscissa.
     pub fn to(&self) -> f64 {
         self.end
@@ -82,6 +84,7 @@ impl TableCurve {
     }
 
     /// The value or derivative at an abscissa within the range of the curve.
+    /// From the left, the first point belongs to what lies before it.
     fn inside(&self, u: f64, order: usize, left: bool) -> f64 {
         if left && u <= self.from() {
             return constant(self.first, order);
@@ -97,6 +100,7 @@ impl TableCurve {
     }
 
     /// Continues the curve outside in a straight line with the slope of its end.
+    /// The slope outside is constant, and higher derivatives are 0.
     fn beyond(&self, u: f64, order: usize) -> f64 {
         let (edge, value, slope) = if u < self.from() {
             (self.from(), self.first, self.pieces[0][1])
@@ -118,6 +122,7 @@ fn constant(value: f64, order: usize) -> f64 {
 }
 
 /// The value or derivative of a cubic at distance `d` from the start of its piece.
+/// Orders above 3 give 0.
 fn cubic(c: &[f64; 4], d: f64, order: usize) -> f64 {
     match order {
         0 => c[0] + ((c[3] * d + c[2]) * d + c[1]) * d,
@@ -129,6 +134,7 @@ fn cubic(c: &[f64; 4], d: f64, order: usize) -> f64 {
 }
 
 /// The ranges of points between jumps, in order. Each has at least one point.
+/// Jumps separate them.
 fn continuous(x: &[f64]) -> Vec<std::ops::Range<usize>> {
     let mut runs = Vec::new();
     let mut begin = 0;
@@ -142,6 +148,7 @@ fn continuous(x: &[f64]) -> Vec<std::ops::Range<usize>> {
 }
 
 /// The pieces of one run, one fewer than its points. A run of one point has none.
+/// Coefficients are in powers of the distance from the start, constant first.
 fn run_pieces(x: &[f64], y: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Vec<[f64; 4]> {
     let n = x.len();
     if n < 2 {
@@ -167,6 +174,7 @@ fn run_pieces(x: &[f64], y: &[f64], smoothness: Smoothness, extrapolation: Extra
 
 /// The slope of a cubic curve at each point, from the secants between neighbours.
 /// There is one secant fewer than points, and at least two.
+/// `smoothness` must be one of the cubic kinds.
 pub fn slopes(x: &[f64], secants: &[f64], smoothness: Smoothness, periodic: bool) -> Vec<f64> {
     match smoothness {
         Smoothness::Akima | Smoothness::ModifiedAkima => {
@@ -180,6 +188,7 @@ pub fn slopes(x: &[f64], secants: &[f64], smoothness: Smoothness, periodic: bool
 /// Each secant is weighted by how much the curve bends on the other side, so that a corner does not disturb its
 /// surroundings.
 /// `modified` adds the mean size of the secants to the weights, so that level parts stay level.
+/// There is one slope for each point, which is one more than secants.
 fn akima(secants: &[f64], modified: bool, periodic: bool) -> Vec<f64> {
     let n = secants.len();
     // The weights need two secants beyond each end: those of the next period, or linear extrapolations of the secants.
@@ -211,6 +220,7 @@ fn akima(secants: &[f64], modified: bool, periodic: bool) -> Vec<f64> {
 
 /// Slopes that make no extremum between points.
 /// Methods: Fritsch and Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300; Steffen, Astron. Astrophys. 239 (1990) 443.
+/// The end points have the slope of the secant there.
 fn monotone(x: &[f64], secants: &[f64], steffen: bool) -> Vec<f64> {
     let n = secants.len();
     let slope = |k: usize| {

@@ -156,6 +156,7 @@ pub fn builtin(name: &str) -> Option<BuiltinImplementation> {
 }
 
 /// A single known number as result.
+/// Functions at compile time return lists of values.
 fn one(x: f64) -> Option<Vec<ExternalValue>> {
     Some(vec![ExternalValue::Numbers { dims: Vec::new(), values: vec![Some(x)] }])
 }
@@ -166,6 +167,7 @@ fn row(x: &[f64]) -> Option<Vec<ExternalValue>> {
 }
 
 /// Argument `k`, if it is a text.
+/// `None` for another kind of argument.
 fn text(given: &[ExternalValue], k: usize) -> Option<&str> {
     match given.get(k)? {
         ExternalValue::Text(text) => Some(text),
@@ -174,6 +176,7 @@ fn text(given: &[ExternalValue], k: usize) -> Option<&str> {
 }
 
 /// Argument `k`, if it is a known number. Of an array the first element.
+/// `None` if it is not known before the run.
 fn number(given: &[ExternalValue], k: usize) -> Option<f64> {
     match given.get(k)? {
         ExternalValue::Numbers { values, .. } => *values.first()?,
@@ -195,6 +198,7 @@ fn scanned_number(given: &[ExternalValue], token: impl Fn(&str) -> Option<(usize
 }
 
 /// The curves of the object in the first argument.
+/// `None` if the argument is another object.
 fn curves_of(given: &[ExternalValue]) -> Option<Arc<Vec<TableCurve>>> {
     match given.first()? {
         ExternalValue::Object(ExternalObject::Curves(table)) => Some(table.clone()),
@@ -203,6 +207,7 @@ fn curves_of(given: &[ExternalValue]) -> Option<Arc<Vec<TableCurve>>> {
 }
 
 /// The time table of the object in the first argument.
+/// `None` if the argument is another object.
 fn times_of(given: &[ExternalValue]) -> Option<Arc<TimeTable>> {
     match given.first()? {
         ExternalValue::Object(ExternalObject::Times(table)) => Some(table.clone()),
@@ -211,6 +216,7 @@ fn times_of(given: &[ExternalValue]) -> Option<Arc<TimeTable>> {
 }
 
 /// The surface of the object in the first argument.
+/// `None` if the argument is another object.
 fn map_of(given: &[ExternalValue]) -> Option<Arc<TableSurface>> {
     match given.first()? {
         ExternalValue::Object(ExternalObject::Surface(table)) => Some(table.clone()),
@@ -219,6 +225,7 @@ fn map_of(given: &[ExternalValue]) -> Option<Arc<TableSurface>> {
 }
 
 /// A function of the unit in the first argument.
+/// `None` if the argument is another object.
 #[cfg(feature = "fmi")]
 fn of_mockup(given: &[ExternalValue], task: mockup::FmuOperation) -> Option<Arc<dyn ExternalFunction>> {
     match given.first()? {
@@ -267,6 +274,9 @@ impl TableColumns {
 }
 
 /// Checks that abscissae do not decrease, or with `strictly` that they increase.
+///
+/// # Errors
+/// The first pair of abscissae that is out of order.
 fn grows(x: &[f64], strictly: bool) -> Result<(), String> {
     let wrong = |w: &[f64]| w[1] < w[0] || strictly && w[1] == w[0];
     match x.windows(2).find(|w| wrong(w)) {
@@ -276,11 +286,15 @@ fn grows(x: &[f64], strictly: bool) -> Result<(), String> {
 }
 
 /// Argument `k` read by `of`; `what` names it in the error.
+///
+/// # Errors
+/// The argument is not known before the run, or is no literal of the enumeration.
 fn option<T>(given: &[ExternalValue], k: usize, of: fn(f64) -> Option<T>, what: &str) -> Result<T, String> {
     number(given, k).and_then(of).ok_or(format!("its {what} is not known"))
 }
 
 /// The constructor of `CombiTable1D`. Arguments: file, table name, table, then options by the numbers used here.
+/// Columns other than the first are values.
 fn curves(given: &[ExternalValue]) -> Result<ExternalObject, String> {
     let columns = TableColumns::of(given)?;
     let smoothness = option(given, 7, Smoothness::from_number, "smoothness")?;
@@ -293,6 +307,7 @@ fn curves(given: &[ExternalValue]) -> Result<ExternalObject, String> {
 }
 
 /// The constructor of `CombiTimeTable`.
+/// Arguments that C needs as sizes of arrays are skipped.
 fn times(given: &[ExternalValue]) -> Result<ExternalObject, String> {
     let columns = TableColumns::of(given)?;
     let options = (
@@ -312,6 +327,7 @@ fn times(given: &[ExternalValue]) -> Result<ExternalObject, String> {
 }
 
 /// The constructor of `CombiTable2D`: the first column and the first row of the table are the axes.
+/// Values are at the crossings of both.
 fn map(given: &[ExternalValue]) -> Result<ExternalObject, String> {
     let columns = TableColumns::of(given)?;
     if columns.0[0].len() < 2 {

@@ -37,6 +37,7 @@ impl MatrixOffsets {
     }
 
     /// The index of the first element of B: n, nrhs, A and lda stand before it.
+    /// The elements of B follow row by row.
     fn right_side(&self) -> usize {
         2 + self.n * self.n + 1
     }
@@ -52,6 +53,7 @@ impl LinearSolve {
     /// The derivative of X by the arguments in `by`, from one factorisation of A.
     /// It solves A*X_S = B_S - sum over i of E_i*X_(S without i), because A and B are linear in their elements.
     /// E_i is 1 at the element of A that argument i stands for.
+    /// For several arguments it calls itself with one of them left out.
     fn derivative(
         places: &MatrixOffsets,
         args: &[f64],
@@ -107,6 +109,7 @@ impl ExternalFunction for LinearSolve {
 /// `dgelsy`: the least-squares solution of minimum norm, then `rank` and `info`.
 /// The arguments are those of the C call: nrow, ncol, nrhs, A, nrow, B, nx, jpvt, rcond, rank, work, lwork, info.
 /// `None` if an argument is not known before the run, or the decomposition fails.
+/// Only known values are solved: least squares are evaluated at compile time.
 pub fn least_squares(given: &[ExternalValue]) -> Option<Vec<ExternalValue>> {
     let known = |k: usize| match given.get(k)? {
         ExternalValue::Numbers { dims, values } => {

@@ -2,6 +2,7 @@
 //! The scanning functions take white space, then a token, and give the position behind it.
 
 /// The part of a text between two positions, both included. Positions outside are moved to the nearest end.
+/// A position within a character of several bytes gives an empty text.
 pub fn substring(text: &str, from: f64, to: f64) -> String {
     let first = from.max(1.0) as usize - 1;
     let last = (to.max(0.0) as usize).min(text.len());
@@ -15,6 +16,7 @@ pub fn compare(a: &str, b: &str, case_sensitive: bool) -> f64 {
 }
 
 /// The first position at or after `from` that is not white space. One past the end if there is none.
+/// White space is that of ASCII.
 pub fn skip_white_space(text: &str, from: f64) -> f64 {
     let first = (from.max(1.0) as usize - 1).min(text.len());
     let blank = text.as_bytes()[first..].iter().take_while(|b| b.is_ascii_whitespace()).count();
@@ -32,6 +34,7 @@ pub fn scan<T>(text: &str, from: f64, token: impl Fn(&str) -> Option<(usize, T)>
 }
 
 /// An identifier at the beginning of a text, with its length in bytes.
+/// It begins with a letter.
 pub fn identifier(text: &str) -> Option<(usize, String)> {
     let length = text.bytes().take_while(|b| b.is_ascii_alphanumeric() || *b == b'_').count();
     let begins = text.bytes().next().is_some_and(|b| b.is_ascii_alphabetic());
@@ -64,6 +67,7 @@ pub fn integer(text: &str, unsigned: bool) -> Option<(usize, f64)> {
 }
 
 /// A real number at the beginning of a text, with its length. With `unsigned` no sign may stand before it.
+/// The form is that of Modelica numbers, with or without an exponent.
 pub fn real(text: &str, unsigned: bool) -> Option<(usize, f64)> {
     let bytes = text.as_bytes();
     let digits = |from: usize| bytes[from..].iter().take_while(|b| b.is_ascii_digit()).count();

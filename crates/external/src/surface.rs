@@ -37,6 +37,7 @@ struct GridPosition {
 
 impl TableSurface {
     /// Builds a surface. `values` are row by row, one row for each abscissa of the first axis.
+    /// Both axes have at least one point.
     pub fn new(axes: [Vec<f64>; 2], values: &[f64], smoothness: Smoothness, extrapolation: Extrapolation) -> Self {
         let [n, m] = [axes[0].len(), axes[1].len()];
         let cubic = !matches!(smoothness, Smoothness::Linear | Smoothness::Constant);
@@ -62,6 +63,7 @@ impl TableSurface {
     }
 
     /// The smallest abscissa of each axis, then the largest of each.
+    /// Tables give them as minimum and maximum abscissae.
     pub fn range(&self) -> [[f64; 2]; 2] {
         [0, 1].map(|end| [0, 1].map(|k| self.axes[k][end * (self.axes[k].len() - 1)]))
     }
@@ -86,6 +88,7 @@ impl TableSurface {
     }
 
     /// The position of an argument along an axis. `None` outside if nothing is to be extrapolated.
+    /// `axis` is 0 or 1.
     fn place(&self, axis: usize, u: f64) -> Option<GridPosition> {
         let x = &self.axes[axis];
         let n = x.len();
@@ -147,6 +150,7 @@ impl TableSurface {
 }
 
 /// Akima's slopes at the points of a line. With one point 0, with two points the secant.
+/// Axes need not be equidistant.
 fn line_slopes(axis: &[f64], line: &[f64], periodic: bool) -> Vec<f64> {
     if axis.len() < 2 {
         return vec![0.0; axis.len()];
@@ -159,6 +163,7 @@ fn line_slopes(axis: &[f64], line: &[f64], periodic: bool) -> Vec<f64> {
 }
 
 /// `a + factor*b`, element by element.
+/// Both are weights of one axis.
 fn sum(a: [[f64; 2]; 2], b: [[f64; 2]; 2], factor: f64) -> [[f64; 2]; 2] {
     std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + factor * b[i][j]))
 }

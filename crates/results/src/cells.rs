@@ -67,6 +67,7 @@ impl<'a> CellRows<'a> {
             self.at = end;
             match self.text.as_bytes().get(end) {
                 Some(&b) if b == self.delimiter => self.at += 1,
+                // A line end of Windows is one line end.
                 Some(b'\r') if self.text.as_bytes().get(end + 1) == Some(&b'\n') => {
                     self.at += 2;
                     return true;

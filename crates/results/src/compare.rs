@@ -166,6 +166,7 @@ fn compare_signal(
         within: false,
     };
     differences(&mut out, &left, &right);
+    // A staircase has no useful correlation.
     if !left.held
         && let Some((shift, score)) = delay((&left.times, &left.values), (&right.times, &right.values))
     {
@@ -267,7 +268,7 @@ fn reason(out: &SignalComparison, left: &ComparisonCurve, right: &ComparisonCurv
 pub fn tube(reference: &Trajectory, index: usize, height: f64, width: f64) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let curve = ComparisonCurve::new(reference, index);
     let mut tube = ToleranceTube::new(&curve.times, &curve.values, curve.held, width, height);
-    // The edges bend half a width before and after each point.
+    // The edges have corners half a width before and after each point.
     let mut times: Vec<f64> = curve.times.iter().flat_map(|&t| [t - width, t, t + width]).collect();
     times.sort_by(f64::total_cmp);
     times.dedup();

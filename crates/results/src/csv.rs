@@ -136,6 +136,7 @@ impl<W: Write> CsvWriter<W> {
 
 impl<W: Write + Send> crate::formats::ResultWriter for CsvWriter<W> {
     fn rows(&mut self, rows: &[f64]) -> io::Result<()> {
+        // The time is not among the signals.
         let mut rows = rows.chunks_exact(self.kinds.len() + 1);
         rows.try_for_each(|row| self.row(row[0], row[1..].iter().copied()))
     }
@@ -162,6 +163,7 @@ pub fn csv_bytes_per_row(signals: &[Signal]) -> u64 {
 }
 
 /// Appends a name, in quotes if a reader could take a character in it for a delimiter.
+/// Quotes inside are doubled.
 fn push_name(line: &mut String, name: &str) {
     if name.contains([',', '"', '\n', '\r', ';', '\t']) {
         line.push('"');
@@ -175,6 +177,7 @@ fn push_name(line: &mut String, name: &str) {
 /// Appends a value as its type is written. A number that is no literal is written as a number.
 fn push_value(line: &mut Vec<u8>, texts: &mut NumberTextCache, kind: &Kind, value: f64) {
     match kind {
+        // A missing Boolean is an empty cell, like a missing number.
         Kind::Boolean if !value.is_nan() => line.extend_from_slice(if value == 0.0 { b"false" } else { b"true" }),
         Kind::Enumeration(literals) => match literal(literals, value) {
             Some(name) => line.extend_from_slice(name.as_bytes()),

@@ -41,6 +41,7 @@ pub static FORMATS: &[ResultFormat] = &[
             let text =
                 String::from_utf8(file.bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned());
             let id = file.sources.add(file.name.to_owned(), text);
+            // A text is added to the sources, so that messages can show its lines.
             read_csv(file.sources, id, file.time_column, ReadStrictness::Result)
         },
         bytes_per_row: csv_bytes_per_row,
@@ -50,6 +51,7 @@ pub static FORMATS: &[ResultFormat] = &[
         name: "Modelica .mat",
         constants_are_free: true,
         grows: false,
+        // Units are part of the format, in the descriptions.
         create: |out, signals, _| Ok(Box::new(mat::MatWriter::new(out, signals))),
         read: |file| usable(file.name, mat::read(&file.bytes)),
         bytes_per_row: binary_bytes_per_row,
@@ -125,6 +127,7 @@ fn binary_bytes_per_row(signals: &[Signal]) -> u64 {
 }
 
 /// The result of a binary reader, with its error as a diagnostic that names the file.
+/// Text formats make diagnostics with places themselves.
 fn usable(name: &str, read: Result<Trajectory, String>) -> StageResult<Trajectory> {
     match read {
         Ok(trajectory) => StageResult::new(trajectory, Vec::new()),

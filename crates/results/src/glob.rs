@@ -67,6 +67,7 @@ pub fn split_list(text: &str) -> Vec<String> {
 
 /// True if a pattern matches a name or its array.
 fn matches(pattern: &str, name: &str) -> bool {
+    // A pattern for an array selects its elements, which are separate signals.
     whole(pattern, name) || array(name).is_some_and(|array| whole(pattern, array))
 }
 

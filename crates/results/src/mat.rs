@@ -71,6 +71,7 @@ impl<W: Write + Send> crate::formats::ResultWriter for MatWriter<W> {
     }
 
     fn flush(&mut self) -> io::Result<u64> {
+        // Nothing is written before the end.
         Ok(0)
     }
 
@@ -108,6 +109,7 @@ impl MatLayout {
             let like = known.entry(fingerprint(column)).or_default();
             let same = like.iter().find(|&&j| equal(&trajectory.columns[j], column));
             let row = match same {
+                // Equal columns share a row of the file.
                 Some(&j) => plan.rows[j],
                 None => {
                     like.push(i);
@@ -164,6 +166,7 @@ fn write_class(out: &mut impl Write) -> io::Result<()> {
 }
 
 /// Writes a matrix of texts, one in each column, filled up with blanks.
+/// The matrix is as wide as the longest text.
 fn write_texts(out: &mut impl Write, name: &str, texts: &[String]) -> io::Result<()> {
     let width = texts.iter().map(String::len).max().unwrap_or(0).max(1);
     header(out, name, TEXT, width, texts.len())?;
@@ -175,6 +178,7 @@ fn write_texts(out: &mut impl Write, name: &str, texts: &[String]) -> io::Result
 }
 
 /// The description of a signal with its units and type in brackets, as other tools expect it.
+/// The order is `description [unit|displayUnit:#(type=..)]`.
 fn describe(signal: &Signal) -> String {
     let kind = match &signal.kind {
         Kind::Real => "",
@@ -208,12 +212,14 @@ fn write_info(out: &mut impl Write, plan: &MatLayout) -> io::Result<()> {
 }
 
 /// Writes `data_1`, with two columns: the values at the first and at the last time.
+/// Values at both times are equal.
 fn write_constants(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayout) -> io::Result<()> {
     header(out, "data_1", DOUBLE, plan.constant.len() + 1, 2)?;
     let ends = [trajectory.times.first(), trajectory.times.last()];
     for time in ends {
         out.write_all(&time.copied().unwrap_or(0.0).to_le_bytes())?;
         for &i in &plan.constant {
+            // An empty trajectory has no values; the matrix still needs a column.
             let value = trajectory.columns[i].first().copied().unwrap_or(0.0);
             out.write_all(&value.to_le_bytes())?;
         }
@@ -222,6 +228,7 @@ fn write_constants(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayo
 }
 
 /// Writes `data_2`, with one column for each time.
+/// The first row is time.
 fn write_moving(out: &mut impl Write, trajectory: &Trajectory, plan: &MatLayout) -> io::Result<()> {
     header(out, "data_2", DOUBLE, plan.moving.len() + 1, trajectory.len())?;
     for (row, time) in trajectory.times.iter().enumerate() {
@@ -307,6 +314,7 @@ fn signal(name: &str, description: &str) -> Signal {
 }
 
 /// The matrices of a file, in order. The bytes are not copied.
+/// Each has a header of 20 bytes, its name, and its elements.
 fn matrices(bytes: &[u8]) -> Result<Vec<MatMatrix<'_>>, String> {
     let damaged = || "the file is damaged or no .mat file of version 4".to_owned();
     let mut at = 0;
@@ -371,6 +379,7 @@ impl MatMatrix<'_> {
     /// The `rows` values of the signal at `place`, which counts from 1 and is negative for negated values.
     /// Of a `constant` signal the first value is repeated. `None` if the place is outside of the matrix.
     fn series(&self, place: i64, rows: usize, constant: bool, transposed: bool) -> Option<Vec<f64>> {
+        // Row 1 has index 0; a place of 0 is invalid.
         let index = usize::try_from(place.unsigned_abs()).ok()?.checked_sub(1)?;
         let sign = if place < 0 { -1.0 } else { 1.0 };
         let row = |r: usize| if constant { 0 } else { r };

@@ -73,6 +73,7 @@ mod writer {
         /// # Errors
         /// The errors of the destination.
         pub fn rows(&mut self, rows: &[f64]) -> io::Result<()> {
+            // An empty group would be legal but useless.
             if rows.is_empty() {
                 return Ok(());
             }
@@ -99,6 +100,7 @@ mod writer {
         }
 
         fn flush(&mut self) -> io::Result<u64> {
+            // The size is not needed, since the format does not grow.
             self.file.inner_mut().flush()?;
             Ok(0)
         }
@@ -281,6 +283,7 @@ mod reader {
         }
         let times = values.remove(time);
         signals.remove(time);
+        // Rows of equal time are allowed: they are events.
         if times.iter().any(|t| !t.is_finite()) || times.windows(2).any(|w| w[1] < w[0]) {
             return Err(format!("the times in `{}` do not increase", names[time]));
         }

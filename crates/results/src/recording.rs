@@ -54,6 +54,7 @@ pub fn read_csv(
     let mut rows = CellRows::new(&sources.get(file).text);
     let mut cells = Vec::new();
     if !rows.next_row(&mut cells) {
+        // There is not even a row of names.
         return StageResult::failed(vec![
             Diagnostic::new(Code::BadData, "the file holds no data")
                 .at(Span { file, start: 0, end: 0 }, "a row of column names is expected here"),
@@ -131,6 +132,7 @@ struct HeaderRow {
 
 impl HeaderRow {
     /// The names of the first row, with the units that stand behind them.
+    /// A cell without text makes a column without a name.
     fn new(file: FileId, cells: &[TextCell<'_>], decimal_comma: bool) -> Self {
         let mut head = HeaderRow {
             file,
@@ -152,6 +154,7 @@ impl HeaderRow {
     }
 
     /// An error at a place of the header.
+    /// Its code is [`Code::BadData`].
     fn error(&self, place: Range<usize>, message: impl Into<String>, label: impl Into<String>) -> Diagnostic {
         Diagnostic::new(Code::BadData, message).at(span(self.file, &place), label)
     }
@@ -165,6 +168,7 @@ impl HeaderRow {
         time_column: Option<&str>,
         strictness: ReadStrictness<'_>,
     ) -> Result<(usize, Vec<ColumnRequest>), Vec<Diagnostic>> {
+        // Without names columns could only be numbered, and the first row would be lost.
         if self.numeric {
             let place = self.places[0].clone();
             return Err(vec![
@@ -185,12 +189,14 @@ impl HeaderRow {
     }
 
     /// The index of a column with a usual name for time, else 0.
+    /// Upper and lower case do not matter.
     fn usual_time(&self) -> usize {
         let same = |usual: &str| self.names.iter().position(|n| n.eq_ignore_ascii_case(usual));
         TIME_NAMES.iter().find_map(|usual| same(usual)).unwrap_or(0)
     }
 
     /// All named columns except for time.
+    /// Columns without a name are left out. None of them must be complete.
     fn all_but(&self, time: usize) -> Result<Vec<ColumnRequest>, Vec<Diagnostic>> {
         let columns = (0..self.width).filter(|&i| i != time && !self.names[i].is_empty());
         let wanted: Vec<ColumnRequest> = columns.map(|index| ColumnRequest { index, complete: false }).collect();
@@ -202,6 +208,7 @@ impl HeaderRow {
     }
 
     /// The columns of these names. The errors list all that are missing.
+    /// Inputs come first, and must be complete; outputs need not be.
     fn named(&self, inputs: &[String], outputs: &[String]) -> Result<Vec<ColumnRequest>, Vec<Diagnostic>> {
         let mut wanted = Vec::new();
         let mut problems = Vec::new();
@@ -220,6 +227,7 @@ impl HeaderRow {
         let mut found = (0..self.width).filter(|&i| self.names[i] == name);
         match (found.next(), found.next()) {
             (Some(first), None) => Ok(first),
+            // Which of them is meant cannot be known.
             (Some(_), Some(second)) => {
                 let place = self.places[second].clone();
                 Err(self.error(place, format!("two columns are named `{name}`"), "the second one"))
@@ -229,6 +237,7 @@ impl HeaderRow {
     }
 
     /// The error that a column is missing, with the names that there are and the nearest one.
+    /// At most ten names are shown.
     fn missing(&self, name: &str) -> Diagnostic {
         let place = self.places[0].start..self.places[self.width - 1].end;
         let known: Vec<String> = self.names.iter().map(|n| format!("`{n}`")).collect();
@@ -379,6 +388,7 @@ impl RecordingReader {
     }
 
     /// Records a fault. Only the first of a kind and column keeps its place.
+    /// `text` is what the message says about it.
     fn fault(&mut self, fault: CellFault, column: usize, place: &Range<usize>, text: impl Into<String>) {
         let found = self.faults.entry((fault, column)).or_insert_with(|| FaultRecord {
             place: place.clone(),
@@ -389,6 +399,7 @@ impl RecordingReader {
     }
 
     /// Takes a row of cells.
+    /// A row of another length is recorded as a fault and skipped.
     fn row(&mut self, cells: &[TextCell<'_>], names: &[String]) {
         // Some programs end each row with a delimiter, which makes an empty cell.
         let surplus = cells.len() == self.width + 1 && cells[self.width].text.is_empty();
@@ -408,11 +419,13 @@ impl RecordingReader {
     }
 
     /// Takes the time of a row. False if it is no number; the row is then skipped.
+    /// Times that do not increase are faults, and are kept all the same.
     fn take_time(&mut self, cell: &TextCell<'_>) -> bool {
         let Some(time) = number::parse(&cell.text, self.decimal_comma).filter(|t| t.is_finite()) else {
             self.fault(CellFault::NoTime, 0, &cell.place, cell.text.as_ref());
             return false;
         };
+        // The first row has nothing to compare with.
         if let Some(&last) = self.times.last() {
             let said = format!("{} after {}", number::text(time), number::text(last));
             if time < last {
@@ -422,6 +435,7 @@ impl RecordingReader {
             }
         }
         self.times.push(time);
+        // Places are needed only for gaps, and take more memory than the times.
         if self.strict {
             self.time_places.push(cell.place.clone());
         }
@@ -429,6 +443,7 @@ impl RecordingReader {
     }
 
     /// Takes a cell of column `i`.
+    /// `name` is that of the column, for messages.
     fn cell(&mut self, i: usize, cell: &TextCell<'_>, name: &str) {
         let column = &mut self.columns[i];
         // In recordings the words `true` and `false` are numbers; in results they make a Boolean column.
@@ -443,6 +458,7 @@ impl RecordingReader {
                 }
             }
             None if cell.text.is_empty() => {
+                // An empty cell is NaN, and allowed except in inputs.
                 column.values.push(f64::NAN);
                 if complete {
                     self.fault(CellFault::Empty, index, &cell.place, name);
@@ -489,6 +505,7 @@ impl RecordingReader {
     }
 
     /// The trajectory, or the faults.
+    /// The warning about the unit of time comes with the trajectory.
     fn finish(mut self, head: &HeaderRow, wanted: &[ColumnRequest]) -> StageResult<Trajectory> {
         if self.strict && self.faults.is_empty() {
             // A row that was skipped would look like a gap.
@@ -506,6 +523,7 @@ impl RecordingReader {
         if !diagnostics.is_empty() {
             return StageResult::failed(diagnostics);
         }
+        // Before times are converted, because the warning quotes the file's numbers.
         let doubt = self.strict.then(|| self.doubt_seconds(head)).flatten();
         in_seconds(&mut self.times, &head.units[self.time]);
         let mut trajectory = Trajectory { times: self.times, ..Trajectory::default() };
@@ -595,6 +613,7 @@ fn typed(mut column: ColumnBuilder) -> (Kind, Vec<f64>) {
 }
 
 /// The diagnostic about a fault, with its help.
+/// `column` is the name of the column concerned.
 fn describe(file: FileId, fault: CellFault, column: &str, found: &FaultRecord) -> Diagnostic {
     let text = &found.text;
     let (message, label, help) = match fault {

@@ -65,6 +65,7 @@ impl TableAxes {
 pub fn read_table(sources: &Sources, file: FileId, name: &str) -> Result<TableMatrix, Box<Diagnostic>> {
     let source = sources.get(file);
     let text = source.text.strip_prefix('\u{feff}').unwrap_or(&source.text);
+    // The first characters decide about the format, not the name of the file.
     if text.starts_with("#1") {
         return TextTableScanner { file, source, at: source.text.len() - text.len() }.table(name);
     }
@@ -86,11 +87,13 @@ fn no_number(file: FileId, place: &Range<usize>, word: &str) -> Box<Diagnostic> 
 }
 
 /// A finite number from a cell. `None` if it is none.
+/// `decimal_comma` is true if commas do not separate cells.
 fn finite(word: &str, decimal_comma: bool) -> Option<f64> {
     number::parse(word, decimal_comma).filter(|value| value.is_finite())
 }
 
 /// Reads a CSV file as a table.
+/// The number of columns is that of the first row.
 fn read_csv_table(file: FileId, source: &SourceText) -> Result<TableMatrix, Box<Diagnostic>> {
     let mut rows = CellRows::new(&source.text);
     let comma = rows.decimal_comma();
@@ -156,6 +159,7 @@ struct MatrixHeader<'a> {
 
 impl<'a> TextTableScanner<'a> {
     /// Finds the table of a name and reads it. The error lists the names of the tables that there are.
+    /// An empty name means the first table.
     fn table(mut self, name: &str) -> Result<TableMatrix, Box<Diagnostic>> {
         let start = self.at;
         let mut known = Vec::new();
@@ -189,6 +193,7 @@ impl<'a> TextTableScanner<'a> {
     }
 
     /// The head that a line is. `Ok(None)` if it is another line; the error is about a head that cannot be read.
+    /// Both `double` and `float` are accepted, as in the Modelica Standard Library.
     fn head(&self, line: &'a str, place: &Range<usize>) -> Result<Option<MatrixHeader<'a>>, Box<Diagnostic>> {
         let line = line.trim_start();
         let Some(rest) = line.strip_prefix("double").or_else(|| line.strip_prefix("float")) else { return Ok(None) };
@@ -222,6 +227,7 @@ impl<'a> TextTableScanner<'a> {
             places: Vec::new(),
         };
         while matrix.values.len() < count {
+            // The file ends, and this table has too few numbers.
             let Some((line, place)) = self.line() else { break };
             // The next table begins, and this one has too few numbers.
             if self.head(line, &place).is_ok_and(|head| head.is_some()) {
@@ -235,6 +241,7 @@ impl<'a> TextTableScanner<'a> {
                 if word.is_empty() {
                     continue;
                 }
+                // A number beyond the declared size is more likely a wrong size than a comment.
                 if matrix.values.len() == count {
                     let message = format!("the table `{}` has more than its {count} numbers", head.name);
                     return Err(wrong(self.file, &at, message, "one too many"));
@@ -259,6 +266,7 @@ impl TableMatrix {
     /// [`Code::BadData`] at the first number out of order.
     pub fn check(&self, axes: TableAxes) -> Result<(), Box<Diagnostic>> {
         let (rows, columns) = axes.least();
+        // Fewer points have no interval to interpolate in.
         if self.rows < rows || self.columns < columns {
             let message = format!("a table of {} rows and {} columns is too small", self.rows, self.columns);
             return Err(wrong(self.file, &self.places[0], message, format!("at least {rows} of {columns} are needed")));
@@ -269,6 +277,7 @@ impl TableMatrix {
     }
 
     /// Checks the order of the abscissae at some indices of `values`.
+    /// `axes` says whether equal neighbours are allowed.
     fn follow(&self, axis: impl Iterator<Item = usize>, axes: TableAxes) -> Result<(), Box<Diagnostic>> {
         let mut before: Option<f64> = None;
         for i in axis {

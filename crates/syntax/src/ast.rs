@@ -453,6 +453,7 @@ impl Expr {
         match &self.kind {
             ExprKind::Real(x) => Some(*x),
             ExprKind::Integer(i) => Some(*i as f64),
+            // The parser has no negative literals: a sign is an operator.
             ExprKind::Unary(UnaryOp::Minus, inner) => inner.as_number().map(|x| -x),
             ExprKind::Unary(UnaryOp::Plus, inner) => inner.as_number(),
             _ => None,

@@ -1,5 +1,5 @@
 //! The formatter: a text in, the same text in the standard layout out.
-//! The command `bramah fmt` and the editor call [`format`].
+//! The command `bramah fmt` and the editor call [`format()`].
 //!
 //! Only indentation, blanks and empty lines change. Tokens, comments and the author's line breaks stay, so the meaning
 //! stays. The layout follows from the tokens alone: [`BlockNesting`] counts levels without a syntax tree.

@@ -8,6 +8,7 @@ use std::sync::{LazyLock, RwLock};
 
 /// An interned name. Two symbols are equal if their words are.
 /// There is no order, because numbers depend on the order of reading and must not influence results.
+/// Copying it is as cheap as copying an integer.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub struct Symbol(u32);
 
@@ -44,6 +45,7 @@ impl Symbol {
     }
 
     /// The word of the symbol.
+    /// It takes a lock for reading.
     pub fn as_str(self) -> &'static str {
         TABLE.read().expect("no writer panics").names[self.0 as usize]
     }

@@ -123,6 +123,7 @@ impl Dimension {
     }
 
     /// The base units whose exponents are `wanted`, each with the magnitude of its exponent.
+    /// The order is that of the base units.
     fn factors(self, wanted: impl Fn(i16) -> bool) -> impl Iterator<Item = String> {
         let pairs = BASE.iter().zip(self.0).filter(move |&(_, exponent)| wanted(exponent));
         pairs.map(|(name, exponent)| match exponent.abs() {

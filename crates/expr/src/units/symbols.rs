@@ -4,6 +4,7 @@
 use super::Dimension;
 
 /// The meaning of a symbol: a value x in it is `x*num*10^decade/den + offset` in coherent SI units.
+/// The factor is split so that conversions between decimal multiples have no rounding error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct UnitSymbol {
     /// The dimension. That of an angle is 1.
@@ -47,6 +48,7 @@ const PREFIXES: [(&str, i32); 22] = [
 ];
 
 /// A coherent SI unit.
+/// Exponents are those of kg, m, s, A, K, mol, cd.
 const fn si(dimension: [i16; 7]) -> UnitSymbol {
     UnitSymbol { dimension: Dimension::new(dimension), angle: 0, num: 1.0, den: 1.0, decade: 0, offset: 0.0 }
 }
@@ -86,6 +88,7 @@ const TURN: f64 = std::f64::consts::TAU;
 const HALF_TURN: f64 = std::f64::consts::PI;
 
 /// A symbol that may have a prefix.
+/// `None` if it is not known, or takes no prefix.
 fn prefixable(name: &str) -> Option<UnitSymbol> {
     Some(match name {
         "m" => si(LENGTH),
@@ -128,6 +131,7 @@ fn prefixable(name: &str) -> Option<UnitSymbol> {
 }
 
 /// A symbol that has no prefix. It takes precedence, so that `min` is a minute and not a milli-inch.
+/// `None` if it is not known.
 fn plain(name: &str) -> Option<UnitSymbol> {
     Some(match name {
         "1" => si(ONE),

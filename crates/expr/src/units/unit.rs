@@ -209,6 +209,7 @@ fn number_length(text: &str) -> usize {
 const DEEPEST: u32 = 50;
 
 /// The state of reading a unit string.
+/// It reads from left to right without going back.
 struct UnitParser<'a> {
     /// The complete string, for messages.
     unit: &'a str,
@@ -224,6 +225,7 @@ impl UnitParser<'_> {
     }
 
     /// Skips blanks and a character, if it comes next. False if another one comes.
+    /// Blanks after it are skipped too.
     fn eat(&mut self, wanted: char) -> bool {
         let found = self.rest.trim_start().strip_prefix(wanted);
         if let Some(rest) = found {
@@ -233,6 +235,7 @@ impl UnitParser<'_> {
     }
 
     /// A unit: factors joined by products and quotients. `depth` is the nesting of brackets.
+    /// A product after a quotient is an error, because its meaning is ambiguous.
     fn unit(&mut self, depth: u32) -> Result<MeasurementUnit, UnitError> {
         let mut product = self.factor(depth)?;
         let mut below = false;
@@ -253,6 +256,7 @@ impl UnitParser<'_> {
     }
 
     /// A factor: a symbol or a unit in brackets, with an optional exponent.
+    /// Brackets may nest [`DEEPEST`] levels deep.
     fn factor(&mut self, depth: u32) -> Result<MeasurementUnit, UnitError> {
         let base = if depth < DEEPEST && self.eat('(') {
             let inner = self.unit(depth + 1)?;
@@ -269,6 +273,7 @@ impl UnitParser<'_> {
     }
 
     /// A symbol, up to the first character that cannot belong to one.
+    /// Letters, `%`, the degree sign and `_` may belong to a symbol; `1` is one on its own.
     fn symbol(&mut self) -> Result<MeasurementUnit, UnitError> {
         let letter = |c: char| c.is_alphabetic() || matches!(c, '%' | '\u{b0}' | '_');
         let end = self.rest.find(|c| !letter(c)).unwrap_or(self.rest.len());

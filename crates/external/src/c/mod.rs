@@ -5,6 +5,7 @@
 //! gives all results in another one.
 //!
 //! Such a function counts as pure: equal arguments give equal results. Its derivatives are central differences.
+//! Included files and libraries come from the annotations of the declaration.
 
 mod native;
 
@@ -39,6 +40,7 @@ impl CNumberType {
 }
 
 /// An argument of the C function, in the order of its parameters.
+/// Arrays are passed row by row.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CArgument {
     /// A number that is passed in, or an array of so many numbers.
@@ -191,6 +193,7 @@ char *ModelicaAllocateStringWithErrorReturn(size_t length);
 ";
 
 /// A text as a C string literal. Bytes outside ASCII become octal escapes.
+/// Texts must not contain zero bytes, as C ends a string there.
 fn literal(text: &str) -> String {
     let mut out = String::from("\"");
     for byte in text.bytes() {
@@ -224,6 +227,7 @@ pub fn bind(compiled: CompiledC, signature: &CSignature) -> Result<Arc<dyn Exter
 }
 
 /// A compiled C function with its library.
+/// All functions and derivatives of one declaration share it.
 #[derive(Debug)]
 struct CLibrary {
     /// The name of the function, for messages.
@@ -266,6 +270,7 @@ impl CLibrary {
 }
 
 /// The function itself, or its derivatives by one input.
+/// It computes derivatives by calling the function twice.
 #[derive(Debug)]
 struct CFunction {
     /// The compiled code, shared by the function and its derivatives.

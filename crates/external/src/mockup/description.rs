@@ -277,11 +277,13 @@ impl FmuDescription {
 }
 
 /// The child elements of a node.
+/// Text and comments between elements are skipped.
 fn elements<'a, 'b>(node: Node<'a, 'b>) -> impl Iterator<Item = Node<'a, 'b>> {
     node.children().filter(Node::is_element)
 }
 
 /// The first child element with this name.
+/// `None` if there is none.
 fn child<'a, 'b>(node: Node<'a, 'b>, name: &str) -> Option<Node<'a, 'b>> {
     elements(node).find(|c| c.tag_name().name() == name)
 }
@@ -295,6 +297,7 @@ fn flag(node: Node<'_, '_>, name: &str) -> bool {
 ///
 /// # Errors
 /// The model identifier is missing, or is no plain name: it becomes part of a path.
+/// Missing flags are false.
 fn offer(node: Node<'_, '_>) -> Result<FmuCapabilities, FmuError> {
     let identifier = node.attribute("modelIdentifier").unwrap_or_default().to_owned();
     let letter = |c: char| c.is_alphanumeric() || c == '_';
@@ -317,6 +320,7 @@ struct TypeDefinitions<'a, 'b> {
 }
 
 /// Collects type and unit definitions.
+/// Those without a name are left out.
 fn types<'a, 'b>(root: Node<'a, 'b>, version: FmuStandard) -> TypeDefinitions<'a, 'b> {
     let all = child(root, "TypeDefinitions").into_iter().flat_map(elements);
     // In FMI 2.0 the attributes are in a child element, such as `Real`.
@@ -332,6 +336,7 @@ fn types<'a, 'b>(root: Node<'a, 'b>, version: FmuStandard) -> TypeDefinitions<'a
 ///
 /// # Errors
 /// The name is missing, or a number cannot be read.
+/// Attributes that cannot be read as numbers are ignored, except for reference, start and sizes.
 fn variable(
     node: Node<'_, '_>,
     version: FmuStandard,
@@ -394,6 +399,7 @@ fn variable(
 }
 
 /// A number or Boolean value. `None` if it is neither.
+/// Boolean values are `true` and `false`.
 fn value(text: &str) -> Option<f64> {
     match text {
         "true" => Some(1.0),
@@ -452,11 +458,15 @@ fn resolve(variables: &mut [FmuVariable], version: FmuStandard) -> Result<(), Fm
 }
 
 /// The error about a derivative whose state does not exist.
+/// `name` is that of the derivative.
 fn no_state(name: &str) -> FmuError {
     format!("`{name}` is the derivative of a variable that is not there").into()
 }
 
 /// The continuous states with their derivatives, as indices of variables, and the number of event indicators.
+///
+/// # Errors
+/// A derivative names no state, or there are too many indicators.
 fn structure(
     root: Node<'_, '_>,
     version: FmuStandard,

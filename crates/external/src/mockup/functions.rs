@@ -63,6 +63,7 @@ impl FmuFunction {
     }
 
     /// All outputs for some arguments. `None` if the unit failed, or an argument is not finite.
+    /// The failure is recorded for messages.
     fn results(&self, args: &[f64]) -> Option<Arc<[f64]>> {
         // Solvers try steps that lead to NaN; the unit must not see such arguments, and it is not its failure.
         if args.iter().any(|x| !x.is_finite()) {
@@ -75,14 +76,15 @@ impl FmuFunction {
     }
 
     /// All outputs, from the kept results or from the unit.
+    /// At most [`MOST_KEPT`] results are kept, and the oldest goes first.
     fn found(&self, args: &[f64]) -> FmuResult {
         let bits: Box<[u64]> = args.iter().map(|x| x.to_bits()).collect();
         let known =
             |all: &VecDeque<(Box<[u64]>, FmuResult)>| all.iter().rev().find(|k| k.0 == bits).map(|k| k.1.clone());
         if let Some(found) = known(&self.known.lock().unwrap_or_else(PoisonError::into_inner)) {
             return found;
-            // The lock is not held during the call, which may take long and may be made by several threads at once.
         }
+        // The lock is not held during the call, which may take long and may be made by several threads at once.
         let found = match self.by {
             None => compute(&self.pool, self.task, args).map(Arc::from),
             Some(by) => derivative(&self.pool, self.task, by, args).map(Arc::from),
@@ -126,6 +128,7 @@ fn number(state: f64) -> u64 {
 }
 
 /// Calls a function of the unit and gives all its outputs.
+/// The order of arguments and outputs is that of [`FmuOperation`].
 fn compute(pool: &InstancePool, task: FmuOperation, args: &[f64]) -> Result<Vec<f64>, FmuError> {
     let description = pool.description();
     if task == FmuOperation::Begin {
@@ -189,6 +192,7 @@ pub fn discrete(pool: &InstancePool) -> Vec<usize> {
 }
 
 /// The derivatives of all outputs by argument `by`: by the unit's own derivatives, or by central differences.
+/// One call computes the derivatives of all outputs, which are kept like results.
 fn derivative(pool: &InstancePool, task: FmuOperation, by: usize, args: &[f64]) -> Result<Vec<f64>, FmuError> {
     if task == FmuOperation::Evaluate
         && let Some(found) = directional(pool, by, args)

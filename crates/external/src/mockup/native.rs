@@ -312,6 +312,7 @@ macro_rules! call {
 }
 
 /// The error that the library lacks a function that is needed.
+/// The name of the field stands for that of the function.
 fn missing(function: &str) -> FmuError {
     format!("its library has no function for `{}`", function.replace('_', " ")).into()
 }
@@ -502,7 +503,6 @@ impl ImportedFmuInstance {
 
     /// Sets a text variable.
     ///
-    ///
     /// # Errors
     /// The unit refuses, or the text contains a zero byte.
     pub fn set_text(&mut self, reference: u32, text: &str) -> Result<(), FmuError> {
@@ -626,6 +626,7 @@ impl Drop for ImportedFmuInstance {
 }
 
 /// An error from a sentence and the messages of the unit, which are taken away.
+/// Several messages are separated by ` / `.
 fn with_words(sentence: String, said: &FmuMessages) -> FmuError {
     let lines = std::mem::take(&mut *said.lock().unwrap_or_else(PoisonError::into_inner));
     let lines: Vec<String> = lines.into_iter().filter(|l| !l.is_empty()).collect();

@@ -263,6 +263,9 @@ impl InstancePool {
     }
 
     /// Takes an instance in a state out of the pool, or makes one. The caller must return it by `leave`.
+    ///
+    /// # Errors
+    /// No instance can be made, or the path to the state fails when it is repeated.
     fn take(&self, state: u64) -> Result<InstanceSlot, FmuError> {
         let mut shelf = self.shelf();
         loop {
@@ -349,6 +352,7 @@ impl InstancePool {
 
     /// Executes an action on an instance, and updates its state.
     /// An event gives the time of the next one and the continuous states; a step gives neither.
+    /// The instance must be in the state from which the action starts.
     fn act(&self, slot: &mut InstanceSlot, act: &InstanceAction) -> Result<(Option<f64>, Vec<f64>), FmuError> {
         let at_root = self.is_root(slot.state);
         let found = match act {
@@ -357,8 +361,8 @@ impl InstancePool {
                     self.initialize(slot, *from)?;
                     self.set_inputs(slot, inputs, true)?;
                     slot.instance.exit_initialization()?;
-                    // Inputs are set again after initialization, as some units compute them anew when the mode ends.
                 }
+                // Inputs are set again after initialization, as some units compute them anew when the mode ends.
                 self.set_inputs(slot, inputs, true)?;
                 slot.instance.step(*from, *to)?;
                 (None, Vec::new())
@@ -414,6 +418,7 @@ impl InstancePool {
     }
 
     /// Puts a new instance into initialization mode at a time (s).
+    /// Its parameters have been set before.
     fn initialize(&self, slot: &mut InstanceSlot, time: f64) -> Result<(), FmuError> {
         match slot.initial {
             Some(t) if t == time => Ok(()),
@@ -466,6 +471,7 @@ impl InstancePool {
     }
 
     /// Sets the continuous states and continuous inputs, between events.
+    /// FMI forbids setting discrete inputs here.
     fn set_continuous(&self, slot: &mut InstanceSlot, states: &[f64], inputs: &[f64]) -> Result<(), FmuError> {
         if !states.is_empty() {
             slot.instance.set_states(states)?;
@@ -494,6 +500,7 @@ impl InstancePool {
 }
 
 /// Splits numbers into those of each variable. Missing numbers give empty or short parts.
+/// Each variable takes as many numbers as it has elements.
 fn spread(pool: &InstancePool, variables: &[usize], numbers: &[f64]) -> Vec<Vec<f64>> {
     let mut rest = numbers;
     let mut part = |i: &usize| {

@@ -30,6 +30,7 @@ pub fn offered(description: &FmuDescription) -> Vec<usize> {
 }
 
 /// The text of the class for one interface.
+/// It is a complete text with `model FMU` and `end FMU`.
 pub fn class(description: &FmuDescription, kind: FmuInterface) -> String {
     let d = description;
     let (parameters, texts) = (offered(d), d.texts());
@@ -73,6 +74,7 @@ pub fn class(description: &FmuDescription, kind: FmuInterface) -> String {
 }
 
 /// The description of the class: what the unit is, which standard and interface it has, and which tool made it.
+/// It is shown as the description string of the class.
 fn title(d: &FmuDescription, kind: FmuInterface) -> String {
     let what = if d.description.is_empty() { d.name.clone() } else { format!("{}: {}", d.name, d.description) };
     let version = match d.version {
@@ -85,6 +87,7 @@ fn title(d: &FmuDescription, kind: FmuInterface) -> String {
 
 /// Declarations and equations for Co-Simulation, with this number of scalar outputs.
 /// The unit is stepped at communication points. Outputs are held in between, and inputs are those of the point before.
+/// Gives the declarations and initial equations, then the equations.
 fn co_simulation(outputs: usize) -> [String; 2] {
     let n = 1 + outputs;
     let declared = format!(
@@ -111,6 +114,7 @@ initial equation
 
 /// Declarations and equations for Model Exchange, with this number of scalar outputs.
 /// Derivatives, event indicators and outputs are computed between events; discrete values change at events.
+/// Gives the declarations and initial equations, then the equations.
 fn model_exchange(d: &FmuDescription, outputs: usize) -> [String; 2] {
     let (n, z) = (d.states.len(), d.indicators);
     let discrete = d.of(FmuCausality::Output).into_iter().map(|i| &d.variables[i]).filter(|v| !v.continuous);
@@ -162,6 +166,7 @@ initial equation
 }
 
 /// The nominal value of a state, or 1 if the unit gives none.
+/// Solvers scale the state by it.
 fn nominal(v: &FmuVariable) -> f64 {
     v.limits[2].map(f64::abs).filter(|x| *x > 0.0).unwrap_or(1.0)
 }
@@ -213,6 +218,7 @@ fn converted(v: &FmuVariable, e: &str, reversed: bool) -> String {
 }
 
 /// The names of a variable's elements with their subscripts, row by row. A scalar gives one name.
+/// Subscripts count from 1.
 fn subscripted(v: &FmuVariable) -> Vec<String> {
     let name = name(&v.name);
     if v.dims.is_empty() {
@@ -231,6 +237,7 @@ fn subscripted(v: &FmuVariable) -> Vec<String> {
 }
 
 /// An array constructor of some expressions. An empty one needs a function, because Modelica has no empty `{}`.
+/// The items are complete expressions.
 fn list_of(items: impl Iterator<Item = String>) -> String {
     let items: Vec<String> = items.collect();
     if items.is_empty() { "zeros(0)".to_owned() } else { format!("{{{}}}", items.join(", ")) }
@@ -252,11 +259,13 @@ fn dims(v: &FmuVariable) -> String {
 }
 
 /// The declaration of an input or output connector. `direction` is `Input` or `Output`.
+/// It has the units and the description of the variable.
 fn port(v: &FmuVariable, direction: &str) -> String {
     format!("  Interfaces.{}{direction} {}{}{}{};\n", ty(v), name(&v.name), dims(v), attributes(v, false), comment(v))
 }
 
 /// The declaration of a parameter with its start value, in SI units.
+/// Its limits become `min` and `max`.
 fn parameter(v: &FmuVariable) -> String {
     let value = |x: &f64| match ty(v) {
         "Boolean" => (*x != 0.0).to_string(),
@@ -270,6 +279,7 @@ fn parameter(v: &FmuVariable) -> String {
 }
 
 /// An array constructor in nested braces, such as `{{1, 2}, {3, 4}}`, from elements row by row.
+/// Each level of braces is a dimension, the first one outermost.
 fn nested(dims: &[usize], values: &[String]) -> String {
     match dims {
         [] | [_] => format!("{{{}}}", values.join(", ")),
@@ -332,6 +342,7 @@ fn name(name: &str) -> String {
 }
 
 /// True for keywords of the language, and for names that are always known.
+/// They may not be used as names of variables.
 fn is_keyword(name: &str) -> bool {
     const WORDS: &str = " algorithm and annotation block break class connect connector constant constrainedby der discrete \
         each else elseif elsewhen encapsulated end enumeration equation expandable extends external false final flow for \
@@ -342,6 +353,7 @@ fn is_keyword(name: &str) -> bool {
 }
 
 /// A text as a Modelica string literal.
+/// Quotes and backslashes are escaped, and other control characters become blanks.
 fn quoted(text: &str) -> String {
     let mut out = "\"".to_owned();
     for c in text.chars() {

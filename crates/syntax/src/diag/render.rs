@@ -95,12 +95,15 @@ fn printable(text: &str) -> String {
 }
 
 /// One line: place, severity, code, message. Without a label there is no place.
+/// The form is that of compilers, which editors recognise: `file:line:column: error[E103]: message`.
 fn short(sources: &Sources, d: &Diagnostic) -> String {
     let mut line = String::new();
     if let Some(label) = d.labels.first() {
+        // Editors expect lines and columns from 1.
         let (row, column) = sources.line_column(label.span.file, label.span.start);
         let _ = write!(line, "{}:{row}:{column}: ", sources.get(label.span.file).path);
     }
+    // The format has one line for each message.
     let message = printable(&d.message).replace('\n', " ");
     let _ = write!(line, "{}[{}]: {message}", severity_name(d.severity), d.code);
     line
@@ -138,6 +141,7 @@ struct JsonPlace {
 }
 
 /// One JSON object on one line.
+/// The form is stable: tools depend on it.
 fn json(sources: &Sources, d: &Diagnostic) -> String {
     let object = JsonDiagnostic {
         code: d.code.id(),
@@ -166,6 +170,7 @@ fn json_label<'a>(sources: &'a Sources, label: &'a Label) -> JsonLabel<'a> {
 }
 
 /// The message with the lines concerned, as the crate `annotate_snippets` lays it out.
+/// `width` is limited to 40 up to 10 000 characters.
 fn human(sources: &Sources, d: &Diagnostic, width: usize, colour: bool) -> String {
     let level = match d.severity {
         Severity::Error => Level::ERROR,
@@ -196,6 +201,7 @@ fn without_margin(text: &str, colour: bool) -> String {
 }
 
 /// The notes of a message, and further ones: how many places are not shown, and which component is concerned.
+/// The component is named with its class, if that is known.
 fn notes(d: &Diagnostic) -> Vec<String> {
     let mut notes: Vec<String> = capped(&d.notes).iter().map(|n| shortened(n)).collect();
     let hidden = d.labels.len().saturating_sub(LONGEST_LIST);

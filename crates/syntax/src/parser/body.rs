@@ -13,6 +13,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::token::TokenKind;
 
 /// The kind of section that the cursor is in.
+/// Each section keyword changes it; `public` and `protected` return to elements.
 #[derive(Clone, Copy, PartialEq)]
 enum SectionKind {
     /// `public`, `protected`, or the part before the first section keyword.
@@ -24,6 +25,7 @@ enum SectionKind {
 }
 
 /// A long class while its body is parsed.
+/// [`long_class`] turns it into a [`Class`] at the end.
 struct LongBodyBuilder {
     /// What has been parsed so far.
     out: LongBody,
@@ -42,6 +44,7 @@ struct LongBodyBuilder {
 /// Parses a long class from its description on, `end` and name included.
 /// `start` is where the class began; `class_extends` is as in [`LongBody`].
 /// An unclosed or wrongly closed class still gives a tree.
+/// Production: `long-class-specifier = IDENT description-string composition "end" IDENT`, from the description on.
 pub(super) fn long_class(
     p: &mut Parser<'_>,
     start: Span,
@@ -96,6 +99,7 @@ fn at_class_end(p: &Parser<'_>) -> bool {
 }
 
 /// The `end Name` of a class, with messages about what stands there instead.
+/// `open` is the class, whose place the messages show; `name` is the name that must follow.
 fn class_end(p: &mut Parser<'_>, open: OpenBlock, name: Ident) {
     let found = p.peek(1);
     if p.at(TokenKind::Eof) {
@@ -107,8 +111,8 @@ fn class_end(p: &mut Parser<'_>, open: OpenBlock, name: Ident) {
     }
     if p.word(found) == name.name.as_str() {
         p.misnested = false;
-    // The name belongs to an enclosing class: that `end` stays for it, and this class is the unclosed one.
     } else if p.is_open_class(p.word(found)) {
+        // The name belongs to an enclosing class: that `end` stays for it, and this class is the unclosed one.
         return p.unclosed(open);
     } else {
         p.wrong_end(open);
@@ -118,6 +122,7 @@ fn class_end(p: &mut Parser<'_>, open: OpenBlock, name: Ident) {
 }
 
 /// A section keyword, an annotation, or an item with its semicolon.
+/// A keyword after a class annotation, or any item, makes the annotation misplaced.
 fn section_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     check_annotation_is_last(p, body);
     let before = body.section;
@@ -128,6 +133,7 @@ fn section_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResul
 }
 
 /// The same, without the checks of what came before.
+/// An item of another section is reported by [`item`].
 fn section_keyword_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     match p.kind() {
         // `public` and `protected` also end an equation or algorithm section.
@@ -149,6 +155,7 @@ fn section_keyword_or_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> Pa
 }
 
 /// Begins the section whose keyword is at the cursor.
+/// `initial` is true after the keyword `initial`.
 fn enter_section(p: &mut Parser<'_>, body: &mut LongBodyBuilder, initial: bool) {
     if p.at(TokenKind::Equation) {
         body.section = SectionKind::Equations { initial };
@@ -162,6 +169,10 @@ fn enter_section(p: &mut Parser<'_>, body: &mut LongBodyBuilder, initial: bool) 
 }
 
 /// An element, or all equations or statements up to the next section or stray word.
+/// Sections are parsed as lists, so that one call usually takes all equations or statements of a section.
+///
+/// # Errors
+/// The item could not be parsed; the caller recovers to the next one.
 fn item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     if stray_word(p) || p.stray_semicolon() {
         return Ok(());
@@ -196,12 +207,14 @@ fn item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
 }
 
 /// A declaration, import, `extends` or nested class, with its semicolon.
+/// It is added to the list of elements with the visibility of the current section.
 fn element_item(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     element::element(p, body.protected, &mut body.out.elements)?;
     p.semicolon()
 }
 
 /// Reports a declaration in an equation or algorithm section, once for each section.
+/// Later declarations of the same section are accepted silently.
 fn blame_declaration(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
     if !std::mem::replace(&mut body.misplaced, true) {
         let rule = "a declaration stands before the first `equation` or `algorithm`, or after `public` or `protected`";
@@ -210,6 +223,7 @@ fn blame_declaration(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
 }
 
 /// Reports and skips a word such as `end if` or `else` that belongs to no open block. False if there is none.
+/// The word is skipped, because no item can begin with it.
 fn stray_word(p: &mut Parser<'_>) -> bool {
     use TokenKind as T;
     let block = match p.kind() {
@@ -225,6 +239,7 @@ fn stray_word(p: &mut Parser<'_>) -> bool {
 }
 
 /// Reports and skips an `end` that closes nothing, with its word and semicolon.
+/// An `end` that no class or block waits for is left over after an earlier mistake, or is one too many.
 fn stray_end(p: &mut Parser<'_>) -> bool {
     if p.is_closing_end() {
         let block = p.word(p.peek(1));
@@ -240,6 +255,7 @@ fn stray_end(p: &mut Parser<'_>) -> bool {
 }
 
 /// Reports `word`, which belongs to a `block` that is not open.
+/// The error counts as one about an `end`, of which each class has one only.
 fn blame_stray(p: &mut Parser<'_>, word: &str, block: &str) {
     let help = format!("leave out `{word}`, or look for an `end` too many above");
     let diagnostic = Diagnostic::new(Code::Syntax, format!("`{word}` without `{block}`"))
@@ -249,6 +265,7 @@ fn blame_stray(p: &mut Parser<'_>, word: &str, block: &str) {
 }
 
 /// True at a token that begins a declaration and cannot begin an equation or statement.
+/// Components without a prefix, such as `Real x`, are not recognised.
 fn begins_declaration(p: &Parser<'_>) -> bool {
     use TokenKind as T;
     matches!(p.kind(), T::Import | T::Extends | T::Parameter | T::Constant)
@@ -257,6 +274,7 @@ fn begins_declaration(p: &Parser<'_>) -> bool {
 
 /// Recognises an equation or statement among the declarations, and reports the missing section keyword.
 /// Gives the section meant; `None` at a declaration.
+/// For example `x = 1` or `connect(a, b)` before the keyword `equation`.
 fn forgotten_section(p: &mut Parser<'_>) -> Option<SectionKind> {
     use TokenKind as T;
     let follows = p.peek_kind(1);
@@ -277,6 +295,7 @@ fn forgotten_section(p: &mut Parser<'_>) -> Option<SectionKind> {
 }
 
 /// An annotation of the class, with its semicolon. Several annotations are merged.
+/// The span of the first keyword is kept until something follows it.
 fn class_annotation(p: &mut Parser<'_>, body: &mut LongBodyBuilder) -> ParseResult<()> {
     let span = p.span();
     if let Some(annotation) = modification::annotation(p)? {
@@ -302,6 +321,7 @@ fn check_annotation_is_last(p: &mut Parser<'_>, body: &mut LongBodyBuilder) {
 
 /// The external function interface, `external "C" y = f(x) annotation(...);` (Modelica 3.6, section 12.9).
 /// The text between keyword and semicolon is kept as written; the crate `model` reads the call from it.
+/// Language name, call and annotation are all optional.
 fn external(p: &mut Parser<'_>, out: &mut LongBody) -> ParseResult<()> {
     let start = p.span();
     p.bump();

@@ -12,6 +12,7 @@ use crate::token::TokenKind;
 
 /// The production `stored-definition`: an optional `within` clause and the classes of the file.
 /// Reads to the end of the text. Classes that cannot be parsed are left out.
+/// Production: `stored-definition = [ "within" [ name ] ";" ] { [ "final" ] class-definition ";" }`.
 pub fn stored_definition(p: &mut Parser<'_>) -> StoredDefinition {
     let mut file = StoredDefinition { within: within(p).ok().flatten(), classes: Vec::new() };
     while !p.at(TokenKind::Eof) {
@@ -29,6 +30,7 @@ pub fn stored_definition(p: &mut Parser<'_>) -> StoredDefinition {
 }
 
 /// The `within` clause. `Ok(None)` without one, and for `within;`, which names the root.
+/// A clause that cannot be parsed is skipped up to the first class.
 fn within(p: &mut Parser<'_>) -> ParseResult<Option<Path>> {
     if !p.eat(TokenKind::Within) {
         return Ok(None);
@@ -41,6 +43,9 @@ fn within(p: &mut Parser<'_>) -> ParseResult<Option<Path>> {
 }
 
 /// A class at the top level of a file, with its semicolon; `final` may stand before it.
+///
+/// # Errors
+/// Another token than a class keyword stands there, or the class has no readable head.
 fn top_level_class(p: &mut Parser<'_>) -> ParseResult<Box<Class>> {
     let start = p.span();
     let final_ = p.eat(TokenKind::Final);
@@ -56,6 +61,7 @@ fn top_level_class(p: &mut Parser<'_>) -> ParseResult<Box<Class>> {
 }
 
 /// Skips to the next class. Only classes may stand at the top level of a file.
+/// A guessed semicolon before it has no effect on later errors.
 fn recover_to_class(p: &mut Parser<'_>) {
     p.guessed = false;
     while !(p.at(TokenKind::Eof) || is_class_keyword(p.kind()) && p.starts_class()) {
@@ -67,12 +73,14 @@ fn recover_to_class(p: &mut Parser<'_>) {
 
 /// A class definition from `encapsulated`, `partial` or its keyword on, one nesting level deeper.
 /// `prefixes` are those that were read before.
+/// Production: `class-definition = [ "encapsulated" ] class-prefixes class-specifier`.
 pub(super) fn class(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     p.nested(|p| class_definition(p, prefixes))
 }
 
 /// A class that is an element: a `constrainedby` clause with its own comment may follow.
 /// `start` is the place of the first prefix.
+/// Production: `( class-definition ) [ constraining-clause description ]` of an element.
 pub(super) fn replaceable_class(p: &mut Parser<'_>, start: Span, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let mut class = class(p, prefixes)?;
     if p.at(TokenKind::Constrainedby) {
@@ -87,6 +95,9 @@ pub(super) fn replaceable_class(p: &mut Parser<'_>, start: Span, prefixes: Eleme
 }
 
 /// The head of a class, and its body in the form that follows: long, short, enumeration or derivative.
+///
+/// # Errors
+/// The kind or the name is missing, or a short form cannot be parsed. Long classes always succeed.
 fn class_definition(p: &mut Parser<'_>, mut prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let start = p.span();
     prefixes.encapsulated = p.eat(TokenKind::Encapsulated);
@@ -107,6 +118,7 @@ fn class_definition(p: &mut Parser<'_>, mut prefixes: ElementPrefixes) -> ParseR
 
 /// The name of a class; `keyword` is named in the message if it is missing.
 /// If the next line is a component declaration, its type must not be taken for the name.
+/// The sign is a type and a name in a row, on a new line, followed by what may follow a component.
 fn class_name(p: &mut Parser<'_>, keyword: &str) -> ParseResult<Ident> {
     let what = format!("the name of the {keyword}");
     let declares = matches!(
@@ -163,6 +175,7 @@ fn class_kind(p: &mut Parser<'_>) -> ParseResult<(ClassKind, &'static str)> {
 // The short forms.
 
 /// A class of the form `type A = ...`; the cursor is behind the sign.
+/// Production: `short-class-specifier`. The kind and name have been read.
 fn short_class(
     p: &mut Parser<'_>,
     start: Span,
@@ -181,6 +194,7 @@ fn short_class(
 }
 
 /// The base of a short class: `input Real[3](unit = "m")`.
+/// Production: `base-prefix type-specifier [ array-subscripts ] [ class-modification ] description`.
 fn short_body(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     let prefix = element::type_prefix(p);
     let base = p.path("the name of a class")?;
@@ -190,6 +204,7 @@ fn short_body(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
 }
 
 /// `enumeration(a, b "text")`, or `enumeration(:)` for an enumeration whose literals are left open.
+/// Production: `"enumeration" "(" ( [ enum-list ] | ":" ) ")"`.
 fn enumeration(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;
@@ -206,6 +221,7 @@ fn enumeration(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
 }
 
 /// A literal of an enumeration. Its annotation is parsed and dropped.
+/// Production: `enumeration-literal = IDENT description`.
 fn literal(p: &mut Parser<'_>) -> ParseResult<EnumLiteral> {
     let name = p.ident("the name of a literal")?;
     let (description, _) = modification::comment(p)?;
@@ -213,6 +229,7 @@ fn literal(p: &mut Parser<'_>) -> ParseResult<EnumLiteral> {
 }
 
 /// A partial derivative of a function: `der(f, x, y)` (Modelica 3.6, section 12.7.2). At least one input is required.
+/// Production: `"der" "(" type-specifier "," IDENT { "," IDENT } ")"`.
 fn derivative(p: &mut Parser<'_>) -> ParseResult<ClassBody> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;

@@ -13,6 +13,7 @@ use crate::diag::Span;
 use crate::token::TokenKind;
 
 /// What all components of one component clause share: `parameter Real[3] a, b = 1` has two components.
+/// Each component gets copies of these parts, so that the tree needs no node for clauses.
 struct ComponentClause {
     /// Where the clause begins.
     start: Span,
@@ -28,6 +29,7 @@ struct ComponentClause {
 
 /// Parses one element without its semicolon and appends it to `elements`.
 /// A component clause gives one element for each component. `protected` is the visibility of the section.
+/// Production: `element`. The semicolon after it is left to the caller.
 pub(super) fn element(p: &mut Parser<'_>, protected: bool, elements: &mut Vec<Element>) -> ParseResult<()> {
     let start = p.span();
     let kind = match p.kind() {
@@ -49,6 +51,7 @@ pub(super) fn element(p: &mut Parser<'_>, protected: bool, elements: &mut Vec<El
 // Imports and extends.
 
 /// An `import` clause. Its comment is parsed and dropped.
+/// Production: `import-clause = "import" ( IDENT "=" name | name [ ".*" | "." "{" import-list "}" ] ) description`.
 fn import(p: &mut Parser<'_>) -> ParseResult<Import> {
     p.bump();
     if p.at(TokenKind::Ident) && p.peek_kind(1) == TokenKind::Equal {
@@ -85,6 +88,7 @@ fn import(p: &mut Parser<'_>) -> ParseResult<Import> {
 }
 
 /// The names in braces of `import A.{b, c}`.
+/// The cursor is on the opening brace.
 fn import_list(p: &mut Parser<'_>) -> ParseResult<Vec<Ident>> {
     let opened = p.span();
     p.bump();
@@ -97,6 +101,7 @@ fn import_list(p: &mut Parser<'_>) -> ParseResult<Vec<Ident>> {
 }
 
 /// An `extends` clause. Its annotation is parsed and dropped.
+/// Production: `extends-clause = "extends" type-specifier [ class-or-inheritance-modification ] [ annotation-clause ]`.
 fn extends(p: &mut Parser<'_>) -> ParseResult<ExtendsClause> {
     p.bump();
     let base = p.path("the name of a class")?;
@@ -108,6 +113,7 @@ fn extends(p: &mut Parser<'_>) -> ParseResult<ExtendsClause> {
 // Prefixes.
 
 /// The prefixes `redeclare final inner outer replaceable`, which the grammar has in this order.
+/// Flags of prefixes that are not written stay false.
 fn prefixes(p: &mut Parser<'_>) -> ElementPrefixes {
     let mut prefixes = ElementPrefixes::default();
     // Ranks give the order; equal ranks exclude each other.
@@ -129,6 +135,7 @@ fn prefixes(p: &mut Parser<'_>) -> ElementPrefixes {
 }
 
 /// The type prefixes: `flow` or `stream`, then variability, then causality. The grammar has them in this order.
+/// Production: `type-prefix`. Of several prefixes of one rank the last one counts.
 pub(super) fn type_prefix(p: &mut Parser<'_>) -> TypePrefix {
     let mut prefix = TypePrefix::default();
     let mut last = 0;
@@ -147,6 +154,7 @@ pub(super) fn type_prefix(p: &mut Parser<'_>) -> TypePrefix {
 }
 
 /// Reports a prefix whose rank is not above that of the one before it.
+/// `rank` belongs to the prefix at the cursor, `last` to the one before it. The first prefix has `last` 0.
 fn check_order(p: &mut Parser<'_>, rank: u8, last: u8) {
     if rank > last {
         return;
@@ -165,6 +173,7 @@ fn check_order(p: &mut Parser<'_>, rank: u8, last: u8) {
 
 /// The components of one clause, appended to `elements`; the cursor is behind the prefixes.
 /// The first element's span begins with the clause, those of the others with their names.
+/// Production: `component-clause = type-prefix type-specifier [ array-subscripts ] component-list`.
 fn component_clause(
     p: &mut Parser<'_>,
     start: Span,
@@ -196,6 +205,7 @@ fn component_clause(
 }
 
 /// Reports prefixes after the type prefixes, as in `parameter final Real`, and skips them.
+/// They are not applied: the message asks for the right order.
 fn check_late_prefix(p: &mut Parser<'_>) {
     use TokenKind::{Final, Inner, Outer, Redeclare, Replaceable};
     while matches!(p.kind(), Final | Inner | Outer | Redeclare | Replaceable) {
@@ -207,6 +217,7 @@ fn check_late_prefix(p: &mut Parser<'_>) {
 }
 
 /// One component of a clause: name, dimensions, modification, condition and comment.
+/// Production: `component-declaration = declaration [ "if" expression ] description`.
 fn component(p: &mut Parser<'_>, clause: &ComponentClause) -> ParseResult<ComponentDeclaration> {
     let name = component_name(p)?;
     let mut subscripts = optional_subscripts(p)?;
@@ -233,6 +244,7 @@ fn component(p: &mut Parser<'_>, clause: &ComponentClause) -> ParseResult<Compon
 ///
 /// # Errors
 /// A sign of an equation in its place gets advice: the keyword `equation` is then probably missing.
+/// The message differs if the text looks like an equation without its section keyword.
 fn component_name(p: &mut Parser<'_>) -> ParseResult<Ident> {
     if matches!(p.kind(), TokenKind::Equal | TokenKind::LeftParen | TokenKind::Dot) {
         let help = "equations stand after the keyword `equation`";
@@ -245,6 +257,7 @@ fn component_name(p: &mut Parser<'_>) -> ParseResult<Ident> {
 }
 
 /// Dimensions in square brackets such as `[3, :]`. Empty if there are none.
+/// The cursor need not be on a bracket.
 pub(super) fn optional_subscripts(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     if p.at(TokenKind::LeftBracket) { expr::subscripts(p) } else { Ok(Vec::new()) }
 }
@@ -265,6 +278,7 @@ fn set_prefix(prefix: &mut TypePrefix, kind: TokenKind) {
 
 /// Gives all components of a clause the constraint.
 /// The description and annotation after it go to components without their own.
+/// The constraint is cloned for each component, as the tree has no node for clauses.
 fn constrain(
     elements: &mut [Element],
     constraint: &ConstrainingClause,

@@ -13,6 +13,7 @@ use crate::token::TokenKind;
 pub(super) type ConditionalBranches<T> = Vec<(Expr, Vec<T>)>;
 
 /// One equation with its description, without its semicolon. The span covers the equation alone.
+/// Production: `some-equation`, with its description.
 pub(super) fn equation(p: &mut Parser<'_>) -> ParseResult<Equation> {
     let start = p.span();
     let kind = p.nested(|p| match p.kind() {
@@ -28,12 +29,14 @@ pub(super) fn equation(p: &mut Parser<'_>) -> ParseResult<Equation> {
 }
 
 /// An if-equation. It may have no `else`.
+/// All branches hold equations; how many each must have is a rule of the crate `model`.
 fn if_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let (branches, otherwise) = if_block(p, equation)?;
     Ok(EquationKind::If { branches, otherwise })
 }
 
 /// A for-equation.
+/// The iterators may be several, which stand for nested loops.
 fn for_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let (iterators, body) = for_block(p, equation)?;
     Ok(EquationKind::For { iterators, body })
@@ -41,6 +44,10 @@ fn for_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
 
 /// `a = b`, or a call such as `assert(...)`.
 /// `:=` is reported and read as `=`.
+/// Both sides are expressions; neither is assigned.
+///
+/// # Errors
+/// A side cannot be parsed, or no sign stands between them.
 fn plain_equation(p: &mut Parser<'_>) -> ParseResult<EquationKind> {
     let left = expr::simple_expression(p)?;
     match p.kind() {
@@ -77,12 +84,14 @@ fn equation_without_sign(p: &mut Parser<'_>, left: Expr) -> ParseResult<Equation
 }
 
 /// True if an expression begins before its first operand, which means that brackets enclose it.
+/// `whole` is the span of the expression, `first` that of its first operand.
 fn is_bracketed(whole: Span, first: Span) -> bool {
     whole.start < first.start
 }
 
 /// Reports `==` between two operands where `due` (`=` or `:=`) should stand.
 /// `left` and `right` are the places of the operands; the sign is looked for between them.
+/// The comparison is then taken for the equation or assignment that was meant.
 pub(super) fn blame_comparison(p: &mut Parser<'_>, left: Span, right: Span, due: &str, help: &str) {
     let gap = p.text.get(left.end as usize..right.start as usize).unwrap_or("");
     let offset = gap.find("==").unwrap_or(0) as u32;
@@ -98,6 +107,7 @@ fn advice_on_equation(p: &Parser<'_>, left: &Expr) -> Option<&'static str> {
 }
 
 /// Recognises an assignment arrow, `x <- y`, which parses as a comparison with `-y`. Gives the place of `<-`.
+/// `None` if the expression is no such comparison, or blanks separate `<` from `-`.
 pub(super) fn arrow(p: &Parser<'_>, expr: &Expr) -> Option<Span> {
     let ExprKind::Binary(BinaryOp::Lt, left, right) = &expr.kind else { return None };
     let gap = p.text.get(left.span.end as usize..right.span.end as usize)?;
@@ -107,6 +117,7 @@ pub(super) fn arrow(p: &Parser<'_>, expr: &Expr) -> Option<Span> {
 }
 
 /// Reports an assignment arrow. `due` is the sign to be written, `rule` says in which section it stands.
+/// The result is to be returned: both sides have been read as one expression, and the item is given up.
 pub(super) fn blame_arrow(p: &mut Parser<'_>, arrow: Span, due: &str, rule: &str) -> ParseAbort {
     let help = format!("`<-` is read as \"less than minus\"; {rule}");
     p.slip_at(arrow, format!("expected `{due}`, found `<-`"), &format!("expected `{due}`"), help)
@@ -116,6 +127,7 @@ pub(super) fn blame_arrow(p: &mut Parser<'_>, arrow: Span, due: &str, rule: &str
 
 /// An if-block: `if ... then ... elseif ... else ... end if`.
 /// Gives the conditional branches and the items after `else`.
+/// `item` parses one equation or statement without its semicolon.
 pub(super) fn if_block<T>(
     p: &mut Parser<'_>,
     item: fn(&mut Parser<'_>) -> ParseResult<T>,
@@ -145,6 +157,7 @@ pub(super) fn if_block<T>(
 }
 
 /// Reports a misspelt `elseif`, such as `elif`.
+/// The cursor stays on the word, which the caller reads as `elseif`.
 fn check_elseif(p: &mut Parser<'_>) {
     if !p.at(TokenKind::Elseif) {
         let word = p.word(p.token());
@@ -153,6 +166,7 @@ fn check_elseif(p: &mut Parser<'_>) {
 }
 
 /// Reports a branch after `else`.
+/// `seen_else` is true if the block had an `else` before.
 fn check_second_else(p: &mut Parser<'_>, seen_else: bool) {
     if seen_else {
         let word = p.word(p.token());
@@ -173,6 +187,7 @@ fn note_else_if(p: &mut Parser<'_>) {
 }
 
 /// A when-block: `when ... then ... elsewhen ... end when`.
+/// `item` parses one equation or statement without its semicolon.
 pub(super) fn when_block<T>(
     p: &mut Parser<'_>,
     item: fn(&mut Parser<'_>) -> ParseResult<T>,
@@ -187,6 +202,7 @@ pub(super) fn when_block<T>(
 }
 
 /// A for-loop: `for i in 1:n loop ... end for`. After errors in its header it has no iterators.
+/// Gives the iterators, outermost first, and the items of the loop.
 pub(super) fn for_block<T>(
     p: &mut Parser<'_>,
     item: fn(&mut Parser<'_>) -> ParseResult<T>,
@@ -201,6 +217,7 @@ pub(super) fn for_block<T>(
 }
 
 /// A while-loop: `while c loop ... end while`.
+/// Only statements have it. Gives the condition and the items of the loop.
 pub(super) fn while_block<T>(
     p: &mut Parser<'_>,
     item: fn(&mut Parser<'_>) -> ParseResult<T>,
@@ -214,6 +231,7 @@ pub(super) fn while_block<T>(
 }
 
 /// One branch from its keyword on: condition, `then`, and the items up to the next branch or `end`.
+/// The keyword, such as `if` or `elsewhen`, is at the cursor and is not checked.
 fn branch<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> ParseResult<T>) -> (Expr, Vec<T>) {
     p.bump();
     let condition = condition(p, TokenKind::Then);
@@ -222,6 +240,7 @@ fn branch<T>(p: &mut Parser<'_>, item: fn(&mut Parser<'_>) -> ParseResult<T>) ->
 
 /// A condition and the keyword after it.
 /// A condition that cannot be parsed becomes `ExprKind::Error`, so that the body is read nevertheless.
+/// `keyword` is `then` or `loop`.
 fn condition(p: &mut Parser<'_>, keyword: TokenKind) -> Expr {
     let span = p.span();
     let condition = expr::expression(p);
@@ -245,6 +264,7 @@ fn header_end(p: &mut Parser<'_>, is_fine: bool, keyword: TokenKind) {
 }
 
 /// Skips the rest of a header that was not understood: to one past `keyword`, or else to the end of the line.
+/// The parser then continues with the body of the block.
 fn skip_header(p: &mut Parser<'_>, keyword: TokenKind) {
     // The header reaches to the first semicolon at most; beyond it a keyword belongs to another block.
     let in_header = p.tokens[p.at..].iter().take_while(|token| token.kind != TokenKind::Semicolon);
@@ -264,6 +284,7 @@ fn skip_header(p: &mut Parser<'_>, keyword: TokenKind) {
 // Ends of blocks.
 
 /// Records the block at the cursor as open.
+/// [`close_block`] removes it from the stack.
 fn open_block(p: &mut Parser<'_>, kind: OpenBlockKind) {
     p.open.push(OpenBlock { kind, span: p.span(), else_if: None });
 }
@@ -273,6 +294,7 @@ fn open_block(p: &mut Parser<'_>, kind: OpenBlockKind) {
 fn close_block(p: &mut Parser<'_>, keyword: TokenKind) {
     let misspelt = p.eat_misspelt(TokenKind::End);
     let Some(open) = p.open.pop() else { return };
+    // A misspelt word such as `endif` was reported and closes the block.
     if misspelt {
         return;
     }
@@ -295,6 +317,7 @@ fn close_block(p: &mut Parser<'_>, keyword: TokenKind) {
 }
 
 /// True if `end` with this word closes another open block, or a class.
+/// A name after `end` always closes something else, a class.
 fn closes_something_else(p: &Parser<'_>, word: TokenKind) -> bool {
     let is_open = |kind| p.open.iter().any(|open| open.kind == kind);
     match word {

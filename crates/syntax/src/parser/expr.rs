@@ -23,6 +23,8 @@ pub fn whole_expression(p: &mut Parser<'_>) -> Option<Expr> {
 }
 
 /// The production `expression`: an if-expression, a range, or operands joined by operators.
+/// Production: `expression = simple-expression | "if" expression "then" expression { "elseif" .. } "else" expression`.
+/// On return the parser's `height` covers the expression and everything that the caller parsed before.
 pub(super) fn expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     // The height of what the caller has parsed so far must survive the inner expression, which starts from zero.
     let outer = std::mem::take(&mut p.height);
@@ -36,11 +38,13 @@ pub(super) fn expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
 
 /// The production `simple-expression`: any expression that does not begin with `if`.
 /// The left side of an equation must be one, because `if` begins an if-equation there.
+/// Production: `simple-expression = logical-expression [ ":" logical-expression [ ":" logical-expression ] ]`.
 pub(super) fn simple_expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     p.nested(range_or_value)
 }
 
 /// `a`, `a:b` or `a:step:b`.
+/// The span reaches from the first to the last operand. A range cannot be an operand without brackets.
 fn range_or_value(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let from = operator::operators(p)?;
     if !p.eat(TokenKind::Colon) {
@@ -55,6 +59,7 @@ fn range_or_value(p: &mut Parser<'_>) -> ParseResult<Expr> {
 }
 
 /// `if c then a elseif d then b else e`. The `else` is required, because the expression must have a value.
+/// The cursor is on `if`, and afterwards one past the last operand of the `else` branch.
 fn if_expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     let mut branches = Vec::new();
@@ -76,6 +81,9 @@ fn if_expression(p: &mut Parser<'_>) -> ParseResult<Expr> {
 }
 
 /// The `then` of an if-expression, with advice where `=` was written in a condition.
+///
+/// # Errors
+/// Another token stands there.
 fn expect_then(p: &mut Parser<'_>) -> ParseResult<()> {
     if p.eat(TokenKind::Then) {
         return Ok(());
@@ -88,6 +96,9 @@ fn expect_then(p: &mut Parser<'_>) -> ParseResult<()> {
 
 /// The production `primary`: one operand, which is a literal, reference, call, array, matrix or bracketed expression.
 /// Sets the parser's `height` to that of the operand.
+///
+/// # Errors
+/// Reports a token that cannot begin an operand.
 pub(super) fn primary(p: &mut Parser<'_>) -> ParseResult<Expr> {
     p.height = 0;
     let span = p.span();
@@ -120,6 +131,7 @@ pub(super) fn primary(p: &mut Parser<'_>) -> ParseResult<Expr> {
 
 /// The number at the cursor, which stays there.
 /// An integer beyond 64 bits becomes a Real; a Real that overflows is reported and becomes infinite.
+/// Integers without point and exponent are exact up to 64 bits; Modelica leaves the range of Integer to the tool.
 fn number(p: &mut Parser<'_>) -> ExprKind {
     let word = p.word(p.token());
     if p.at(TokenKind::Integer)
@@ -136,6 +148,7 @@ fn number(p: &mut Parser<'_>) -> ExprKind {
 }
 
 /// The value of the string at the cursor, without quotation marks and with escapes resolved. The cursor stays.
+/// The lexer guarantees that the token ends at its closing quotation mark, or where it guessed the end.
 pub(super) fn string_value(p: &mut Parser<'_>) -> Box<str> {
     let token = p.token();
     let word = p.word(token);
@@ -147,6 +160,7 @@ pub(super) fn string_value(p: &mut Parser<'_>) -> Box<str> {
 
 /// Resolves the escapes of a string without quotation marks.
 /// `start` is the byte of the text at which `inner` begins; messages about unknown escapes need it.
+/// An unknown escape is reported and stands for the character itself.
 fn unescaped(p: &mut Parser<'_>, inner: &str, start: u32) -> Box<str> {
     let mut value = String::with_capacity(inner.len());
     let mut characters = inner.char_indices();
@@ -174,6 +188,10 @@ fn unknown_escape(p: &mut Parser<'_>, escaped: char, start: u32) {
 }
 
 /// An opening bracket in an expression: `(a)`, an indexed `(a)[i]`, or a list of outputs `(a, , c)`.
+/// One expression in brackets is that expression; none or several, or a missing one, are a tuple.
+///
+/// # Errors
+/// Reports a bracket that is not closed.
 fn bracketed(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     let mut items = output_list(p)?;
@@ -194,6 +212,7 @@ fn bracketed(p: &mut Parser<'_>) -> ParseResult<Expr> {
 }
 
 /// Expressions in brackets of which each may be missing: `(a, , c)`. `()` gives an empty list.
+/// The cursor is on the opening bracket. Assignments of several outputs use this too, as their left side.
 pub(super) fn output_list(p: &mut Parser<'_>) -> ParseResult<Vec<Option<Expr>>> {
     let opened = p.span();
     p.bump();
@@ -213,6 +232,7 @@ pub(super) fn output_list(p: &mut Parser<'_>) -> ParseResult<Vec<Option<Expr>>> 
 }
 
 /// `{a, b}` or the array comprehension `{a for i in 1:n}`. An empty array is an error (Modelica has no such literal).
+/// Production: `"{" array-arguments "}"`.
 fn array(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let opened = p.span();
     p.bump();
@@ -235,6 +255,8 @@ fn array(p: &mut Parser<'_>) -> ParseResult<Expr> {
 }
 
 /// A matrix, `[a, b; c, d]`: rows separated by semicolons, columns by commas.
+/// Production: `"[" expression-list { ";" expression-list } "]"`.
+/// Elements may be arrays, so that rows of different length are left to the crate `model`.
 fn matrix(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let opened = p.span();
     p.bump();
@@ -255,6 +277,7 @@ fn matrix(p: &mut Parser<'_>) -> ParseResult<Expr> {
 
 /// True at a line that begins like an equation, where an expression should stand.
 /// The bracket before it is then taken to be unclosed.
+/// Only tokens that cannot continue an expression on a new line count.
 pub(super) fn looks_like_equation(p: &Parser<'_>) -> bool {
     use TokenKind::{Assign, Connect, Equal, For, Ident, If, When};
     let begins = match p.kind() {
@@ -276,6 +299,7 @@ pub(super) fn expressions(p: &mut Parser<'_>) -> ParseResult<Vec<Expr>> {
 // References and calls.
 
 /// A reference such as `a[i].b`, or a call if `(` follows it.
+/// Names of functions and of components look alike until the bracket.
 fn reference_or_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let reference = reference(p, "an expression")?;
     if p.at(TokenKind::LeftParen) {
@@ -286,6 +310,10 @@ fn reference_or_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
 }
 
 /// A call whose function name is a keyword: `der(...)`, `initial()`, `pure(...)`.
+/// These words are reserved, so that they cannot be parsed as names. The cursor is on the word.
+///
+/// # Errors
+/// Reports the word if no bracket follows.
 fn keyword_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
     if p.peek_kind(1) != TokenKind::LeftParen {
         return Err(p.unexpected("an expression"));
@@ -297,6 +325,7 @@ fn keyword_call(p: &mut Parser<'_>) -> ParseResult<Expr> {
 }
 
 /// The production `component-reference`: `[.] a[i].b`. `what` describes it in the message.
+/// Production: `component-reference = [ "." ] IDENT [ array-subscripts ] { "." IDENT [ array-subscripts ] }`.
 pub(super) fn reference(p: &mut Parser<'_>, what: &str) -> ParseResult<ComponentReference> {
     let start = p.span();
     let global = p.eat(TokenKind::Dot);
@@ -308,6 +337,7 @@ pub(super) fn reference(p: &mut Parser<'_>, what: &str) -> ParseResult<Component
 }
 
 /// A name with optional subscripts.
+/// `what` describes the name in the message that it is missing.
 fn reference_part(p: &mut Parser<'_>, what: &str) -> ParseResult<ReferencePart> {
     let name = p.ident(what)?;
     let subscripts = if p.at(TokenKind::LeftBracket) { subscripts(p)? } else { Vec::new() };
@@ -315,6 +345,7 @@ fn reference_part(p: &mut Parser<'_>, what: &str) -> ParseResult<ReferencePart> 
 }
 
 /// Subscripts in square brackets: `[i, :, 1:end]`. Inside, `end` is an operand.
+/// Production: `array-subscripts = "[" subscript { "," subscript } "]"`, where a subscript is `:` or an expression.
 pub(super) fn subscripts(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
     p.subscripts += 1;
     let result = subscript_list(p);
@@ -340,6 +371,7 @@ fn subscript_list(p: &mut Parser<'_>) -> ParseResult<Vec<Subscript>> {
 }
 
 /// The arguments of a call, whose opening bracket is at the cursor, or a reduction such as `sum(x for x in v)`.
+/// `function` is the reference before it; the span of the call includes both.
 fn call(p: &mut Parser<'_>, function: ComponentReference) -> ParseResult<Expr> {
     let (start, opened) = (function.span, p.span());
     p.bump();
@@ -358,6 +390,7 @@ fn call(p: &mut Parser<'_>, function: ComponentReference) -> ParseResult<Expr> {
 
 /// The arguments of a call up to the closing bracket, which stays.
 /// A positional argument after a named one is reported and kept.
+/// Production: `function-arguments`, without iterators.
 fn arguments(p: &mut Parser<'_>) -> ParseResult<ArgumentLists> {
     let (mut args, mut named) = (Vec::new(), Vec::new());
     if p.at(TokenKind::RightParen) {
@@ -380,11 +413,13 @@ fn arguments(p: &mut Parser<'_>) -> ParseResult<ArgumentLists> {
 }
 
 /// True at `name =`, which begins a named argument.
+/// An `==` after the name is a comparison, which is a positional argument.
 fn at_named(p: &Parser<'_>) -> bool {
     p.at(TokenKind::Ident) && p.peek_kind(1) == TokenKind::Equal
 }
 
 /// `name = value`.
+/// The cursor is on the name.
 fn named_argument(p: &mut Parser<'_>) -> ParseResult<(Ident, Expr)> {
     let name = p.ident("the name of an argument")?;
     p.expect(TokenKind::Equal)?;
@@ -392,11 +427,13 @@ fn named_argument(p: &mut Parser<'_>) -> ParseResult<(Ident, Expr)> {
 }
 
 /// The value of an argument: an expression, or a function with some of its inputs given.
+/// Production: `function-argument = function-partial-application | expression`.
 fn argument(p: &mut Parser<'_>) -> ParseResult<Expr> {
     if p.at(TokenKind::Function) { p.nested(partial_application) } else { expression(p) }
 }
 
 /// A function as an argument, with some inputs given: `function f(a = 1)` (Modelica 3.6, section 12.4.2.1).
+/// The call that takes the result supplies the remaining inputs. All arguments in the brackets are named.
 fn partial_application(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let start = p.span();
     p.bump();
@@ -421,6 +458,8 @@ fn comprehension_iterators(p: &mut Parser<'_>) -> ParseResult<Vec<ForIndex>> {
 
 /// Iterators of a loop or comprehension, outermost first: `i in 1:n, j`.
 /// An iterator without `in` has no range; it is deduced from how the name indexes arrays.
+/// Production: `for-indices = for-index { "," for-index }`, with `for-index = IDENT [ "in" expression ]`.
+/// `=` is reported and read as `in`.
 pub(super) fn iterators(p: &mut Parser<'_>) -> ParseResult<Vec<ForIndex>> {
     let mut iterators = Vec::new();
     loop {
@@ -438,6 +477,7 @@ pub(super) fn iterators(p: &mut Parser<'_>) -> ParseResult<Vec<ForIndex>> {
 }
 
 /// The character that an escape sequence stands for. `None` if the language does not define it.
+/// Modelica has the escapes of C, except for octal and hexadecimal ones (section 2.4.4).
 fn escape_value(escaped: char) -> Option<char> {
     Some(match escaped {
         '\'' | '"' | '?' | '\\' => escaped,

@@ -20,6 +20,7 @@ pub(super) enum ModificationContext {
 
 /// A modification of a component: `(...) = value`, `= value` or `:= value`.
 /// `None` if there is neither a bracket nor a value. `==` is reported and read as `=`.
+/// Production: `modification = class-modification [ "=" modification-expression ] | "=" modification-expression`.
 pub(super) fn modification(p: &mut Parser<'_>) -> ParseResult<Option<Modification>> {
     let with_arguments = p.at(TokenKind::LeftParen);
     let arguments = if with_arguments { class_modification(p, ModificationContext::Elsewhere)? } else { Vec::new() };
@@ -46,6 +47,7 @@ pub(super) fn modification(p: &mut Parser<'_>) -> ParseResult<Option<Modificatio
 ///
 /// # Errors
 /// The first argument that cannot be parsed ends the list.
+/// Production: `class-modification = "(" [ argument-list ] ")"`.
 pub(super) fn class_modification(
     p: &mut Parser<'_>,
     place: ModificationContext,
@@ -64,12 +66,14 @@ pub(super) fn class_modification(
 }
 
 /// One argument of a modification, at its own nesting depth.
+/// Nested modifications therefore reach the limit of nesting earlier than other constructs.
 fn argument_of_modification(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<ModificationArgument> {
     // Counts twice, as it takes more stack than other nesting.
     p.nested(|p| p.nested(|p| bare_argument(p, place)))
 }
 
 /// One argument: `break ...`, a redeclaration, or the modification of an element.
+/// Production: `argument = element-modification-or-replaceable | element-redeclaration`.
 fn bare_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<ModificationArgument> {
     let start = p.span();
     if p.at(TokenKind::Break) {
@@ -91,6 +95,7 @@ fn bare_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult<
 }
 
 /// Reports `redeclare` after `each` or `final`. True if it stands there; it is then read like one in its place.
+/// The word is consumed, and the redeclaration is read as if the order were right.
 fn late_redeclare(p: &mut Parser<'_>) -> bool {
     let is_late = p.at(TokenKind::Redeclare);
     if is_late {
@@ -120,6 +125,7 @@ fn break_argument(p: &mut Parser<'_>, place: ModificationContext) -> ParseResult
 }
 
 /// The two connectors of `connect(a, b)`; the cursor is on `connect`.
+/// Production: `"(" component-reference "," component-reference ")"`.
 pub(super) fn connect_arguments(p: &mut Parser<'_>) -> ParseResult<(Expr, Expr)> {
     p.bump();
     let opened = p.expect(TokenKind::LeftParen)?;
@@ -131,6 +137,7 @@ pub(super) fn connect_arguments(p: &mut Parser<'_>) -> ParseResult<(Expr, Expr)>
 }
 
 /// One argument of `connect`, which must be a component reference.
+/// Whether it names a connector is checked by the crate `model`.
 fn connector(p: &mut Parser<'_>) -> ParseResult<Expr> {
     let reference = expr::reference(p, "the name of a connector")?;
     let span = reference.span;
@@ -141,6 +148,7 @@ fn connector(p: &mut Parser<'_>) -> ParseResult<Expr> {
 ///
 /// # Errors
 /// Reports a subscripted name, which the grammar does not allow here, and a name without anything to change.
+/// Production: `element-modification = name [ modification ] description-string`.
 fn element_modification(p: &mut Parser<'_>) -> ParseResult<ModificationArgumentKind> {
     let path = p.path("the name of an attribute or element")?;
     if p.at(TokenKind::LeftBracket) {
@@ -157,6 +165,7 @@ fn element_modification(p: &mut Parser<'_>) -> ParseResult<ModificationArgumentK
 }
 
 /// What follows `redeclare` or `replaceable` in a modification: a class or a component.
+/// `prefixes` are the words that were read, which the result gets.
 fn redeclaration(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<ModificationArgumentKind> {
     if is_class_keyword(p.kind()) {
         return Ok(ModificationArgumentKind::Class(redeclared_class(p, prefixes)?));
@@ -165,6 +174,7 @@ fn redeclaration(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<M
 }
 
 /// A redeclared class. The grammar allows the short form only; a long one is reported and kept.
+/// `prefixes` has `redeclare` and `replaceable` as they were written.
 fn redeclared_class(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<Class>> {
     let start = p.token();
     let mut class = class::class(p, prefixes)?;
@@ -181,6 +191,7 @@ fn redeclared_class(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResul
 }
 
 /// A redeclared component. It has no condition, and a constraint only if it is replaceable.
+/// Production: `component-clause1`: exactly one component.
 fn redeclared_component(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseResult<Box<ComponentDeclaration>> {
     let prefix = element::type_prefix(p);
     let class = p.path("a type")?;
@@ -208,6 +219,7 @@ fn redeclared_component(p: &mut Parser<'_>, prefixes: ElementPrefixes) -> ParseR
 }
 
 /// The constraint of a replaceable element, `constrainedby T(...)`. `None` if there is none.
+/// Production: `constraining-clause = "constrainedby" type-specifier [ class-modification ]`.
 pub(super) fn constraint(p: &mut Parser<'_>) -> ParseResult<Option<ConstrainingClause>> {
     if !p.eat(TokenKind::Constrainedby) {
         return Ok(None);
@@ -217,6 +229,7 @@ pub(super) fn constraint(p: &mut Parser<'_>) -> ParseResult<Option<ConstrainingC
 }
 
 /// The arguments in brackets where no value may follow. `None` without a bracket.
+/// Used for base classes, constraints and annotations, which have no value of their own.
 pub(super) fn optional_class_modification(
     p: &mut Parser<'_>,
     place: ModificationContext,
@@ -229,6 +242,7 @@ pub(super) fn optional_class_modification(
 }
 
 /// A description string: string literals joined by `+`, as one text. `None` if there is none.
+/// Production: `description-string = [ STRING { "+" STRING } ]`.
 pub(super) fn description(p: &mut Parser<'_>) -> Option<Box<str>> {
     if !p.at(TokenKind::String) {
         return None;
@@ -248,6 +262,7 @@ pub(super) fn description(p: &mut Parser<'_>) -> Option<Box<str>> {
 ///
 /// # Errors
 /// Reports the keyword without a bracket after it.
+/// Production: `annotation-clause = "annotation" class-modification`.
 pub(super) fn annotation(p: &mut Parser<'_>) -> ParseResult<Option<Modification>> {
     if !p.eat(TokenKind::Annotation) {
         return Ok(None);
@@ -259,6 +274,7 @@ pub(super) fn annotation(p: &mut Parser<'_>) -> ParseResult<Option<Modification>
 }
 
 /// The production `comment`: a description and an annotation, each optional.
+/// Modelica calls it a description; it has no relation to comments of the lexer.
 pub(super) fn comment(p: &mut Parser<'_>) -> ParseResult<(Option<Box<str>>, Option<Modification>)> {
     Ok((description(p), annotation(p)?))
 }

@@ -52,6 +52,9 @@ pub(super) fn operators(p: &mut Parser<'_>) -> ParseResult<Expr> {
 
 /// The loop of the algorithm: prefixes, an operand, and an operator, until none follows.
 /// `base` is the height of the operator stack below which other expressions wait.
+///
+/// # Errors
+/// An operand cannot be parsed, or the tree becomes too high.
 fn operators_above(p: &mut Parser<'_>, base: usize) -> ParseResult<Expr> {
     loop {
         prefixes_of_operand(p, base);
@@ -71,6 +74,7 @@ fn operators_above(p: &mut Parser<'_>, base: usize) -> ParseResult<Expr> {
 }
 
 /// Pushes the signs and `not` before an operand.
+/// Several may stand in a row before one operand, such as `not -a`.
 fn prefixes_of_operand(p: &mut Parser<'_>, base: usize) {
     while let Some(op) = prefix(p.kind()) {
         if p.at(TokenKind::Bang) {
@@ -88,6 +92,7 @@ fn prefixes_of_operand(p: &mut Parser<'_>, base: usize) {
 
 /// Completes the waiting operators, down to `base`, whose precedence is at least `strength`.
 /// With `strength` 0 all are completed.
+/// The top of the stack is completed first, which makes operators of equal precedence associate to the left.
 fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> ParseResult<()> {
     while p.pending.len() > base
         && let Some(&top) = p.pending.last()
@@ -109,6 +114,7 @@ fn reduce(p: &mut Parser<'_>, base: usize, strength: u8) -> ParseResult<()> {
 }
 
 /// Takes an operand from the stack and puts it back with the prefix applied.
+/// `after` is as in [`PendingOperator::Prefix`]; if it is there, the error is reported now that the operand is known.
 fn complete_prefix(p: &mut Parser<'_>, op: UnaryOp, sign: Span, after: Option<Span>) -> ParseResult<()> {
     let (operand, height) = p.operands.pop().ok_or(ParseAbort)?;
     if let Some(after) = after {
@@ -119,6 +125,7 @@ fn complete_prefix(p: &mut Parser<'_>, op: UnaryOp, sign: Span, after: Option<Sp
 }
 
 /// Takes two operands from the stack and puts them back joined.
+/// The right operand is on top of the stack.
 fn complete_infix(p: &mut Parser<'_>, op: BinaryOp) -> ParseResult<()> {
     let (right, right_height) = p.operands.pop().ok_or(ParseAbort)?;
     let (left, left_height) = p.operands.pop().ok_or(ParseAbort)?;
@@ -142,6 +149,7 @@ fn push_operand(p: &mut Parser<'_>, kind: ExprKind, span: Span, height: u32) -> 
 // Slips.
 
 /// Reports an operator of another language, which is then parsed as its Modelica equivalent.
+/// The four of them are `&&`, `||`, `!=` and `**`.
 fn check_foreign(p: &mut Parser<'_>) {
     let right = match p.kind() {
         TokenKind::AndAnd => "and",
@@ -155,6 +163,7 @@ fn check_foreign(p: &mut Parser<'_>) {
 }
 
 /// Reports a second relation or power in a row; the cursor is on the operator that comes second.
+/// The expression is still built, so that parsing continues.
 fn blame_chain(p: &mut Parser<'_>) {
     let word = p.word(p.token());
     if matches!(p.kind(), TokenKind::Caret | TokenKind::DotCaret | TokenKind::StarStar) {
@@ -176,6 +185,7 @@ fn blame_prefix(p: &mut Parser<'_>, before: Span, sign: Span, operand: Span) {
     p.slip_at(sign, message, "brackets are needed here", help);
 }
 
+/// Precedences of an operator that waits.
 impl PendingOperator {
     /// The precedence of the operator. An operator that comes must bind more strongly to take the operand from it.
     fn strength(&self) -> u8 {

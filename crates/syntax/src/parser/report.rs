@@ -20,8 +20,9 @@ const MAX_QUOTED: usize = 40;
 
 impl Parser<'_> {
     /// Records an error at the current token, unless it follows from one already reported.
-    // At the end of a truncated text every construct looks unclosed; only the lexer's error is real.
+    /// It is dropped if the token was blamed before, a limit was reached, or there are [`MAX_ERRORS`] errors already.
     pub(super) fn report(&mut self, diagnostic: Diagnostic) {
+        // At the end of a truncated text every construct looks unclosed; only the lexer's error is real.
         let follows = self.blamed == Some(self.at)
             || self.halted
             || (self.truncated && self.at(TokenKind::Eof))
@@ -34,6 +35,7 @@ impl Parser<'_> {
     }
 
     /// Records an error about an `end`, unless the same class already had one.
+    /// A wrong `end` shifts the nesting, so that further ones in the class say nothing new.
     pub(super) fn report_end(&mut self, diagnostic: Diagnostic) {
         if !self.misnested {
             self.report(diagnostic);
@@ -42,6 +44,7 @@ impl Parser<'_> {
     }
 
     /// Reports a recognised mistake at the current token; the parser continues as if the text were right.
+    /// `message` is one line, `label` stands at the place, and `help` says what to write instead.
     pub(super) fn slip(&mut self, message: impl Into<String>, label: &str, help: impl Into<String>) {
         self.slip_at(self.span(), message, label, help);
     }
@@ -60,11 +63,13 @@ impl Parser<'_> {
     }
 
     /// Reports "expected this, found the current token". `expected` comes with its own backticks.
+    /// The result is to be returned by the caller, which cannot continue.
     pub(super) fn unexpected(&mut self, expected: &str) -> ParseAbort {
         self.unexpected_with(expected, None)
     }
 
     /// The same with advice. Advice about the token found takes precedence over `help`.
+    /// `help` is a complete sentence without a final full stop.
     pub(super) fn unexpected_with(&mut self, expected: &str, help: Option<&str>) -> ParseAbort {
         let mut diagnostic = self.expected_found(expected);
         let own = self.advice_on_token();
@@ -82,6 +87,7 @@ impl Parser<'_> {
     }
 
     /// The diagnostic "expected this, found the current token", without help.
+    /// A character that Modelica does not use is named as such.
     fn expected_found(&self, expected: &str) -> Diagnostic {
         let found = self.describe(self.token());
         let message = match self.kind() {
@@ -92,6 +98,7 @@ impl Parser<'_> {
     }
 
     /// A token in the words of a message, such as "the keyword `end`".
+    /// Long words are shortened, and the end of the text is called "the end of the file".
     pub(super) fn describe(&self, token: Token) -> String {
         let word = shortened(self.word(token));
         match token.kind {
@@ -105,6 +112,7 @@ impl Parser<'_> {
     }
 
     /// Advice that follows from the current token alone. `None` if the token tells nothing.
+    /// It explains characters of other languages, units behind numbers, and `=` in conditions.
     fn advice_on_token(&self) -> Option<String> {
         let token = self.token();
         let previous = self.previous().kind;
@@ -122,6 +130,7 @@ impl Parser<'_> {
     }
 
     /// True at an `=` in a block with a condition, where `==` was probably meant.
+    /// On a new line the `=` belongs to another item, and the condition was not finished.
     fn blames_comparison(&self) -> bool {
         matches!(
             self.open.last().map(|open| open.kind),
@@ -131,6 +140,7 @@ impl Parser<'_> {
 
     /// Recognises a keyword used as a name, reports it, and returns true: the caller then takes it for the name.
     /// False if the keyword probably begins something, so that it must not be consumed.
+    /// `what` says in the message what kind of name was expected.
     pub(super) fn keyword_as_name(&mut self, what: &str) -> bool {
         use TokenKind as T;
         // Only what can follow a name lets the keyword pass for one.
@@ -149,6 +159,7 @@ impl Parser<'_> {
     }
 
     /// Reports and skips a semicolon where an item could begin. False if there is none.
+    /// The cursor is then behind it.
     pub(super) fn stray_semicolon(&mut self) -> bool {
         let is_stray = self.at(TokenKind::Semicolon);
         if is_stray {
@@ -160,8 +171,9 @@ impl Parser<'_> {
 
     /// Reports a quotation mark without backslash inside a string, and skips the rest of the string.
     /// The lexer ended the string at that mark; its rest became words and further strings.
-    // Each further string that touches a word is another part of the same text.
+    /// It is called after a string token; each round handles one such mark.
     pub(super) fn skip_rest_of_string(&mut self) {
+        // Each further string that touches a word is another part of the same text.
         while self.previous().kind == TokenKind::String && self.is_adjacent(0) && self.is_word() {
             let help = "a quotation mark inside a string is written `\\\"`";
             let end = self.previous().end;
@@ -182,6 +194,7 @@ impl Parser<'_> {
     }
 
     /// Reports something at the top level of a file that is no class, with the class keyword it resembles.
+    /// A stray `end` after an earlier error is not reported.
     pub(super) fn no_class(&mut self) -> ParseAbort {
         // A stray `end` after other errors is what an earlier mistake left over.
         if self.at(TokenKind::End) && !self.diagnostics.is_empty() {
@@ -193,6 +206,7 @@ impl Parser<'_> {
     }
 
     /// Reports what follows a complete element, equation or statement on the same line.
+    /// The previous token decides whether an operator could follow, which the message then offers.
     pub(super) fn unexpected_after_item(&mut self) -> ParseAbort {
         use TokenKind as T;
         let expected = match self.previous().kind {
@@ -206,6 +220,7 @@ impl Parser<'_> {
 
     /// Reports a semicolon missing after the previous token; the parser continues as if it stood there.
     /// The diagnostic carries the fix that inserts it.
+    /// The place is empty and lies directly behind the token, where editors insert.
     pub(super) fn missing_semicolon(&mut self) {
         let end = self.previous().end;
         let place = Span { file: self.file, start: end, end };
@@ -224,6 +239,7 @@ impl Parser<'_> {
     ///
     /// # Errors
     /// Reports the bracket as unclosed if the current token cannot stand inside brackets, else the token as unexpected.
+    /// `opened` is the place of the opening bracket, which the message shows too.
     pub(super) fn close(&mut self, bracket: TokenKind, opened: Span, expected: &str) -> ParseResult<Span> {
         let span = self.span();
         if self.eat(bracket) {
@@ -244,6 +260,7 @@ impl Parser<'_> {
     }
 
     /// True at a token that can only stand outside the current brackets.
+    /// Such as `;`, another closing bracket, a section keyword, or `then`.
     fn ends_brackets(&self) -> bool {
         use TokenKind as T;
         let closing = matches!(self.kind(), T::Semicolon | T::RightParen | T::RightBracket | T::RightBrace);
@@ -252,6 +269,7 @@ impl Parser<'_> {
 
     /// Reports a class or block whose `end` is missing before the current token.
     /// If it contains an `else if`, the message shows that place: it opened a second `if`.
+    /// The current token is where the `end` should be.
     pub(super) fn unclosed(&mut self, open: OpenBlock) {
         let (what, closing) = open.words();
         let found = self.found_at_end();
@@ -268,6 +286,7 @@ impl Parser<'_> {
     }
 
     /// The current token for a message, together with the word after it if it is `end`.
+    /// For example "`end Volume`".
     fn found_at_end(&self) -> String {
         let next = self.peek(1);
         match self.kind() {
@@ -279,6 +298,7 @@ impl Parser<'_> {
     }
 
     /// Reports an `end` whose name or keyword does not fit what it closes; the cursor is on `end`.
+    /// For a name, the place is that of the name; for a bare `end;`, that of the `end`.
     pub(super) fn wrong_end(&mut self, open: OpenBlock) {
         let (what, closing) = open.words();
         let found = self.found_at_end();
@@ -300,6 +320,7 @@ impl Parser<'_> {
 
     /// Recognises a block word of another language at the beginning of an item, such as `elif` or `endif`.
     /// Gives the keyword meant and its spelling. `None` outside a block of that kind, where the word may be a name.
+    /// The innermost open block decides, so that `endif` is only understood inside an `if`.
     pub(super) fn misspelt_block_word(&self) -> Option<(TokenKind, &'static str)> {
         if !self.at(TokenKind::Ident) {
             return None;
@@ -325,6 +346,7 @@ impl Parser<'_> {
     }
 
     /// Reports and skips a misspelt word that means `kind`. False if there is none.
+    /// The caller then continues as after the right word.
     pub(super) fn eat_misspelt(&mut self, kind: TokenKind) -> bool {
         let Some((_, right)) = self.misspelt_block_word().filter(|(meant, _)| *meant == kind) else {
             return false;
@@ -338,6 +360,7 @@ impl Parser<'_> {
 
 impl OpenBlock {
     /// The construct and its closing words for a message, such as "this `if`" and "end if".
+    /// A class is called by its name, a block by its keyword.
     fn words(&self) -> (String, String) {
         let block = |word: &str| (format!("this `{word}`"), format!("end {word}"));
         match self.kind {
@@ -359,6 +382,7 @@ fn is_number(kind: TokenKind) -> bool {
 }
 
 /// A word shortened to one line and [`MAX_QUOTED`] characters, with dots where something was cut.
+/// Quoted text of several lines would break the layout of messages.
 pub(super) fn shortened(word: &str) -> String {
     let line = word.lines().next().unwrap_or("");
     let mut short: String = line.chars().take(MAX_QUOTED).collect();

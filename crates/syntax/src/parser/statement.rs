@@ -16,6 +16,7 @@ pub(super) fn statement(p: &mut Parser<'_>) -> ParseResult<Statement> {
 }
 
 /// The statement that the current keyword begins, or an assignment or call.
+/// The blocks contain statements again.
 fn statement_kind(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     Ok(match p.kind() {
         TokenKind::If => {
@@ -49,6 +50,7 @@ fn statement_kind(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
 }
 
 /// An assignment of several outputs: `(a, , c) := f(x)`. An empty place drops that output.
+/// Production: `"(" output-expression-list ")" ":=" component-reference function-call-args`.
 fn assign_tuple(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     let targets = expr::output_list(p)?;
     assignment_sign(p)?;
@@ -62,6 +64,7 @@ fn assign_tuple(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
 }
 
 /// An assignment `a := b`, or a call `f(x)` whose outputs are not used.
+/// Production: `component-reference ( ":=" expression | function-call-args )`.
 fn assign_or_call(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
     let left = expr::simple_expression(p)?;
     match left.kind {
@@ -83,6 +86,7 @@ fn assign_or_call(p: &mut Parser<'_>) -> ParseResult<StatementKind> {
 ///
 /// # Errors
 /// Reports an arrow, an expression as target, or a missing `:=`, whichever the text shows.
+/// `left` has been parsed as an expression, because a call may stand in its place.
 fn check_target(p: &mut Parser<'_>, left: &Expr) -> ParseResult<()> {
     if matches!(left.kind, ExprKind::Reference(_)) {
         return Ok(());
@@ -98,11 +102,15 @@ fn check_target(p: &mut Parser<'_>, left: &Expr) -> ParseResult<()> {
 }
 
 /// True at `:=`, or at `=`, which is reported later.
+/// A call before such a sign is an invalid target of an assignment.
 fn at_assignment_sign(p: &Parser<'_>) -> bool {
     matches!(p.kind(), TokenKind::Assign | TokenKind::Equal)
 }
 
 /// The sign `:=`. `=` is reported and accepted.
+///
+/// # Errors
+/// Reports any other token.
 fn assignment_sign(p: &mut Parser<'_>) -> ParseResult<()> {
     if p.eat(TokenKind::Assign) {
         return Ok(());

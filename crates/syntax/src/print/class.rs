@@ -8,6 +8,7 @@ use crate::ast::{
     ModificationArgumentKind, StoredDefinition, TypePrefix, VariabilityPrefix,
 };
 
+/// Writers of files, classes and their parts. Each leaves the cursor where the next token may follow.
 impl SyntaxPrinter {
     /// A file: its `within` clause and its classes, each ended by a semicolon.
     pub(super) fn file(&mut self, file: &StoredDefinition) {
@@ -23,6 +24,7 @@ impl SyntaxPrinter {
     }
 
     /// A class without its semicolon, in the form of its body: long, short, enumeration or derivative.
+    /// Its own prefixes are written; those of an argument of a modification are not among them.
     pub(super) fn class(&mut self, class: &Class) {
         self.prefixes(&class.prefixes);
         self.prefix(class.prefixes.encapsulated, "encapsulated");
@@ -85,6 +87,7 @@ impl SyntaxPrinter {
     }
 
     /// The name, description, body and `end` of a long class.
+    /// The header ends its line, the parts are indented, and `end` stands at the depth of the class.
     fn long_class(&mut self, class: &Class, body: &LongBody) {
         if let Some(modification) = &body.class_extends {
             self.word("extends ");
@@ -118,8 +121,10 @@ impl SyntaxPrinter {
     }
 
     /// The elements in order, with `public` or `protected` wherever the visibility changes.
+    /// Without `protected` elements no keyword is written.
     fn elements(&mut self, elements: &[Element]) {
         let mut protected = false;
+        // The keyword is written only where the visibility changes.
         for element in elements {
             if element.protected != protected {
                 protected = element.protected;
@@ -130,6 +135,7 @@ impl SyntaxPrinter {
     }
 
     /// The equation and algorithm sections. Equations of one kind are one section; algorithms keep their sections.
+    /// Equations come before algorithms, and initial sections before the others of their kind.
     fn sections(&mut self, body: &LongBody) {
         for (keyword, equations) in [("initial equation", &body.initial_equations), ("equation", &body.equations)] {
             if !equations.is_empty() {
@@ -196,6 +202,7 @@ impl SyntaxPrinter {
     }
 
     /// `flow`, variability and causality, each followed by a blank.
+    /// The order is that of the grammar.
     fn type_prefix(&mut self, prefix: &TypePrefix) {
         self.prefix(prefix.flow, "flow");
         self.prefix(prefix.stream, "stream");
@@ -269,7 +276,9 @@ impl SyntaxPrinter {
     }
 
     /// A modification: arguments in brackets, then ` = value`.
+    /// A modification that only has a value gets no brackets.
     pub(super) fn modification(&mut self, modification: &Modification) {
+        // `break` counts as a value.
         let has_value = modification.value.is_some() || modification.break_value;
         // Without arguments and value the brackets alone show that there is a modification.
         if !modification.arguments.is_empty() || !has_value {
@@ -291,6 +300,7 @@ impl SyntaxPrinter {
     }
 
     /// One argument of a modification.
+    /// Prefixes come first, in the order of [`Self::argument_prefixes`].
     pub(super) fn argument(&mut self, argument: &ModificationArgument) {
         match &argument.kind {
             ModificationArgumentKind::Modify { path, modification, description } => {
@@ -325,6 +335,7 @@ impl SyntaxPrinter {
     }
 
     /// The prefixes of an argument, in the order of the grammar: `redeclare each final replaceable`.
+    /// `prefixes` are those of the redeclared element.
     fn argument_prefixes(&mut self, argument: &ModificationArgument, prefixes: &ElementPrefixes) {
         self.prefix(prefixes.redeclare, "redeclare");
         self.prefix(argument.each, "each");

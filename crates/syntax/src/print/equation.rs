@@ -5,6 +5,7 @@
 use super::SyntaxPrinter;
 use crate::ast::{Equation, EquationKind, Expr, ForIndex, Statement, StatementKind};
 
+/// Writers of equations and statements.
 impl SyntaxPrinter {
     /// An equation and its description, without its semicolon.
     pub(super) fn equation(&mut self, equation: &Equation) {
@@ -71,6 +72,7 @@ impl SyntaxPrinter {
     }
 
     /// Items one level deeper, each on its own line with a semicolon. `item` writes one without them.
+    /// The order is that of the tree.
     pub(super) fn lines<T>(&mut self, items: &[T], item: fn(&mut Self, &T)) {
         self.depth += 1;
         for x in items {
@@ -82,6 +84,7 @@ impl SyntaxPrinter {
     }
 
     /// The branches of a block. `keywords` are those of the first and of the further branches.
+    /// Each branch is the line of its condition and its items. `end` is left to the caller.
     fn branches<T>(&mut self, keywords: [&str; 2], branches: &[(Expr, Vec<T>)], item: fn(&mut Self, &T)) {
         for (i, (condition, body)) in branches.iter().enumerate() {
             // The caller has indented the first line.
@@ -96,7 +99,9 @@ impl SyntaxPrinter {
     }
 
     /// The `else` branch, unless it is empty, and `end if`.
+    /// A branch without items is not written, because it has no effect.
     fn otherwise<T>(&mut self, body: &[T], item: fn(&mut Self, &T)) {
+        // An empty branch is left out with its keyword.
         if !body.is_empty() {
             self.line("else");
             self.lines(body, item);

@@ -6,7 +6,7 @@ use crate::ast::{
 };
 use std::fmt::Write;
 
-// Binding strength, as in the parser, with ranges and operands at the two ends.
+// Precedences, as in the parser, with ranges and operands at the two ends.
 const ANY: u8 = 0;
 const RANGE: u8 = 1;
 const OR: u8 = 2;
@@ -71,6 +71,7 @@ impl SyntaxPrinter {
     }
 
     /// An operand, in brackets if it binds more weakly than `least` requires at this place.
+    /// `least` is the precedence that the surrounding operator requires.
     fn operand(&mut self, expr: &Expr, least: u8) {
         if strength(&expr.kind) < least {
             self.word("(");
@@ -82,6 +83,7 @@ impl SyntaxPrinter {
     }
 
     /// The text of an expression, without brackets around it.
+    /// Operands inside get brackets where their precedence requires it.
     fn bare(&mut self, kind: &ExprKind) {
         match kind {
             ExprKind::Integer(value) => self.number(value),
@@ -125,6 +127,7 @@ impl SyntaxPrinter {
     }
 
     /// A string in quotation marks, with the escapes of Modelica 3.6, section 2.4.4.
+    /// Quotes and backslashes get a backslash, as do control characters that have an escape.
     pub(super) fn string(&mut self, value: &str) {
         self.word("\"");
         for c in value.chars() {
@@ -145,6 +148,7 @@ impl SyntaxPrinter {
     }
 
     /// A prefix operator with its operand.
+    /// `not` takes a relation; a sign takes a product, so that `-(a + b)` keeps its brackets.
     fn unary(&mut self, op: UnaryOp, operand: &Expr) {
         match op {
             UnaryOp::Plus => self.word("+"),
@@ -161,6 +165,7 @@ impl SyntaxPrinter {
     }
 
     /// Two operands with their operator.
+    /// Blanks surround the operator, except for powers.
     fn binary(&mut self, op: BinaryOp, left: &Expr, right: &Expr) {
         let (sign, strength) = sign_and_strength(op);
         // Left-associative operators need no brackets on the left; relations and powers do not associate at all.
@@ -219,6 +224,7 @@ impl SyntaxPrinter {
     }
 
     /// The arguments of a call in brackets, positional ones first.
+    /// Named arguments follow as `name = value`.
     fn arguments(&mut self, args: &[Expr], named: &[(Ident, Expr)]) {
         self.word("(");
         self.separated(args, ", ", Self::expression);
@@ -259,6 +265,7 @@ impl SyntaxPrinter {
 }
 
 /// The precedence of an expression. Expressions that need no brackets anywhere have [`OPERAND`].
+/// Compare with `strength` of the operators in the parser.
 fn strength(kind: &ExprKind) -> u8 {
     match kind {
         ExprKind::If { .. } => ANY,

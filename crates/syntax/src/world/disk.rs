@@ -8,6 +8,7 @@ use std::path::Path;
 use super::World;
 
 /// The files and folders of this machine.
+/// It has no state, so that all uses see the same files.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DiskWorld;
 
