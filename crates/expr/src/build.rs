@@ -31,6 +31,7 @@ impl Exprs {
     }
 
     /// `not a`.
+    #[inline]
     pub fn not(&mut self, a: ExprId) -> ExprId {
         match self.node(a) {
             ExprNode::Num(bits) => self.boolean(f64::from_bits(bits) == 0.0),
@@ -161,17 +162,20 @@ impl Exprs {
 
     /// The smaller of two values.
     /// Two numbers give a number.
+    #[inline]
     pub fn min(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == b { a } else { self.folded(BinaryFunction::Min, a, b) }
     }
 
     /// The larger of two values.
     /// Two numbers give a number.
+    #[inline]
     pub fn max(&mut self, a: ExprId, b: ExprId) -> ExprId {
         if a == b { a } else { self.folded(BinaryFunction::Max, a, b) }
     }
 
     /// The angle of the point `(x, y)`, in rad, as in `math::atan2`.
+    #[inline]
     pub fn atan2(&mut self, y: ExprId, x: ExprId) -> ExprId {
         self.folded(BinaryFunction::Atan2, y, x)
     }
@@ -201,6 +205,7 @@ impl Exprs {
     }
 
     /// The implication: `b` wherever `a` holds, that is `not a or b`.
+    #[inline]
     pub fn implies(&mut self, a: ExprId, b: ExprId) -> ExprId {
         let not = self.not(a);
         self.or(not, b)
@@ -249,33 +254,39 @@ impl Exprs {
     }
 
     /// The absolute value of `a`.
+    #[inline]
     pub fn abs(&mut self, a: ExprId) -> ExprId {
         self.unary(UnaryFunction::Abs, a)
     }
 
     /// The square root of `a`.
+    #[inline]
     pub fn sqrt(&mut self, a: ExprId) -> ExprId {
         self.unary(UnaryFunction::Sqrt, a)
     }
 
     /// The largest whole number not above `a`. It makes no event.
+    #[inline]
     pub fn floor(&mut self, a: ExprId) -> ExprId {
         self.unary(UnaryFunction::Floor, a)
     }
 
     /// The largest whole number not above `a`. A change of it is an event.
+    #[inline]
     pub fn event_floor(&mut self, a: ExprId) -> ExprId {
         if self.as_num(a).is_some() { self.floor(a) } else { self.intern(ExprNode::EventFloor(a)) }
     }
 
     /// Known relations become numbers.
     /// A relation that makes no event.
+    #[inline]
     pub fn rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> ExprId {
         self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(ExprNode::Rel(rel, a, b)))
     }
 
     /// Known relations become numbers, which never change.
     /// A relation whose change is an event.
+    #[inline]
     pub fn event_rel(&mut self, rel: RelationalOp, a: ExprId, b: ExprId) -> ExprId {
         self.known_rel(rel, a, b).unwrap_or_else(|| self.intern(ExprNode::EventRel(rel, a, b)))
     }
@@ -306,18 +317,21 @@ impl Exprs {
     }
 
     /// `homotopy(actual, simplified)`.
+    #[inline]
     pub fn homotopy(&mut self, actual: ExprId, simplified: ExprId) -> ExprId {
         if actual == simplified { actual } else { self.intern(ExprNode::Homotopy(actual, simplified)) }
     }
 
     /// `sample(start, interval)`: true at `start + k*interval`, in s.
     /// Both operands are parameter expressions.
+    #[inline]
     pub fn sample(&mut self, start: ExprId, interval: ExprId) -> ExprId {
         self.intern(ExprNode::Sample(start, interval))
     }
 
     /// `delay(a, time)`. A number is its own delayed value.
     /// The time is in s.
+    #[inline]
     pub fn delay(&mut self, a: ExprId, time: ExprId) -> ExprId {
         match self.node(a) {
             ExprNode::Num(_) => a,
@@ -327,12 +341,14 @@ impl Exprs {
 
     /// The square of `a`, as a power.
     /// Powers with the exponent 2 are computed as products.
+    #[inline]
     pub fn square(&mut self, a: ExprId) -> ExprId {
         let two = self.num(2.0);
         self.pow(a, two)
     }
 
     /// The sum of all terms from left to right. 0 if there are none.
+    #[inline]
     pub fn sum(&mut self, terms: &[ExprId]) -> ExprId {
         terms.iter().fold(Self::ZERO, |sum, &term| self.add(sum, term))
     }

@@ -96,6 +96,7 @@ impl EvaluationCache {
 
 impl Exprs {
     /// The value of `e`. `leaf` gives the values of the leaves, as for [`EvaluationCache::value`].
+    #[inline]
     pub fn eval(&self, e: ExprId, leaf: &mut impl FnMut(ExprNode) -> f64) -> f64 {
         EvaluationCache::default().value(self, e, leaf)
     }

@@ -41,6 +41,7 @@ pub struct ExprId(pub u32);
 
 impl VarId {
     /// The index as `usize`.
+    #[inline]
     pub fn index(self) -> usize {
         self.0 as usize
     }
@@ -48,6 +49,7 @@ impl VarId {
 
 impl ExprId {
     /// The index as `usize`.
+    #[inline]
     pub fn index(self) -> usize {
         self.0 as usize
     }
@@ -267,21 +269,25 @@ impl Exprs {
     pub const ONE: ExprId = ExprId(1);
 
     /// The node of an id.
+    #[inline]
     pub fn node(&self, e: ExprId) -> ExprNode {
         self.nodes[e.index()]
     }
 
     /// The number of nodes. Ids are `0..len`, and the operands of a node have smaller ids than the node.
+    #[inline]
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
     /// Always false: the pool holds 0 and 1 from the beginning.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         false
     }
 
     /// The arguments of a call, in order.
+    #[inline]
     pub fn args(&self, args: ArgumentRange) -> &[ExprId] {
         &self.args[args.start as usize..(args.start + args.len) as usize]
     }
@@ -308,6 +314,7 @@ impl Exprs {
     }
 
     /// The value, if the node is a number.
+    #[inline]
     pub fn as_num(&self, e: ExprId) -> Option<f64> {
         match self.node(e) {
             ExprNode::Num(bits) => Some(f64::from_bits(bits)),
@@ -316,22 +323,26 @@ impl Exprs {
     }
 
     /// A number. Minus zero becomes zero, so that equal numbers are one node.
+    #[inline]
     pub fn num(&mut self, value: f64) -> ExprId {
         let value = if value == 0.0 { 0.0 } else { value };
         self.intern(ExprNode::Num(value.to_bits()))
     }
 
     /// A Boolean value as a number.
+    #[inline]
     pub fn boolean(&mut self, value: bool) -> ExprId {
         if value { Self::ONE } else { Self::ZERO }
     }
 
     /// Simulated time (s).
+    #[inline]
     pub fn time(&mut self) -> ExprId {
         self.intern(ExprNode::Time)
     }
 
     /// The value of a variable.
+    #[inline]
     pub fn var(&mut self, v: VarId) -> ExprId {
         // Node 0 stands for "none", which is no variable.
         match self.leaves.get(v.index()) {
@@ -354,16 +365,19 @@ impl Exprs {
     }
 
     /// The time derivative of a variable.
+    #[inline]
     pub fn der(&mut self, v: VarId) -> ExprId {
         self.intern(ExprNode::Der(v))
     }
 
     /// The value of a discrete variable before the current event.
+    #[inline]
     pub fn pre(&mut self, v: VarId) -> ExprId {
         self.intern(ExprNode::Pre(v))
     }
 
     /// One output of a call. Several outputs are several nodes with the same arguments.
+    #[inline]
     pub fn call(&mut self, function: FunctionId, output: u32, args: &[ExprId]) -> ExprId {
         let args = self.intern_args(args);
         self.intern(ExprNode::Call(function, output, args))

@@ -20,6 +20,7 @@ pub struct NodeOperands<'a> {
 
 impl NodeOperands<'_> {
     /// The operands in order.
+    #[inline]
     pub fn as_slice(&self) -> &[ExprId] {
         if self.many.is_empty() { &self.few[..self.len] } else { self.many }
     }
@@ -142,6 +143,7 @@ impl Exprs {
 
     /// The number of distinct nodes of an expression.
     /// Shared nodes count once.
+    #[inline]
     pub fn node_count(&self, e: ExprId) -> usize {
         self.reachable(&[e], |_| true).len()
     }
@@ -166,11 +168,13 @@ impl Exprs {
     }
 
     /// The variables whose value occurs, sorted.
+    #[inline]
     pub fn variables(&self, e: ExprId) -> Vec<VarId> {
         self.dependencies(&[e]).vars
     }
 
     /// The variables whose time derivative occurs, sorted.
+    #[inline]
     pub fn derivatives(&self, e: ExprId) -> Vec<VarId> {
         self.dependencies(&[e]).ders
     }
@@ -188,6 +192,7 @@ impl Exprs {
     }
 
     /// The expression `e` with parts replaced, see [`Substitution`].
+    #[inline]
     pub fn substitute(&mut self, e: ExprId, replacements: &[(ExprId, ExprId)]) -> ExprId {
         Substitution::new(replacements.iter().copied()).apply(self, e)
     }
@@ -203,6 +208,7 @@ pub struct Substitution {
 
 impl Substitution {
     /// Replaces the first of each pair by the second.
+    #[inline]
     pub fn new(replacements: impl IntoIterator<Item = (ExprId, ExprId)>) -> Self {
         Substitution { memo: replacements.into_iter().collect() }
     }

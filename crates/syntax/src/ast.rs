@@ -30,6 +30,7 @@ pub struct Path {
 
 impl Path {
     /// The identifiers joined by dots, without a leading dot.
+    #[inline]
     pub fn dotted(&self) -> String {
         self.parts.iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(".")
     }

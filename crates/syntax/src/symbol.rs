@@ -46,6 +46,7 @@ impl Symbol {
 
     /// The word of the symbol.
     /// It takes a lock for reading.
+    #[inline]
     pub fn as_str(self) -> &'static str {
         TABLE.read().expect("no writer panics").names[self.0 as usize]
     }

@@ -66,26 +66,31 @@ impl ValueLayout {
     }
 
     /// Length of the array of values.
+    #[inline]
     pub fn len(&self) -> usize {
         self.len as usize
     }
 
     /// Always false: the slots of time and flags always exist.
+    #[inline]
     pub fn is_empty(&self) -> bool {
         false
     }
 
     /// The slot of a variable's value.
+    #[inline]
     pub fn var(&self, v: VarId) -> usize {
         Self::VARIABLES as usize + v.index()
     }
 
     /// The slot of a variable's time derivative; `None` where the model does not use it.
+    #[inline]
     pub fn der(&self, v: VarId) -> Option<usize> {
         existing(self.der[v.index()])
     }
 
     /// The slot of a variable's value before the event; `None` where it is neither discrete nor used.
+    #[inline]
     pub fn pre(&self, v: VarId) -> Option<usize> {
         existing(self.pre[v.index()])
     }
@@ -96,6 +101,7 @@ impl ValueLayout {
     }
 
     /// The slot of an unknown of a block.
+    #[inline]
     pub fn unknown(&self, unknown: Unknown) -> usize {
         match unknown {
             Unknown::Var(v) => self.var(v),
@@ -104,6 +110,7 @@ impl ValueLayout {
     }
 
     /// A fresh array: constants are in place, the homotopy parameter is 1, all else is 0.
+    #[inline]
     pub fn values(&self) -> Vec<f64> {
         let mut values = vec![0.0; self.len()];
         for &(slot, number) in &self.preset {
