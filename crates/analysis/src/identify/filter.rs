@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-/// A second-order section (biquad) in the transposed direct form II, with a[0] = 1.
+/// A second-order section (biquad) in the transposed direct form II, with a0 = 1.
 #[derive(Clone, Copy, Debug)]
 struct SecondOrderSection {
     /// Coefficients of the input: b0, b1, b2.

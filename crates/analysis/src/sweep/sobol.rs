@@ -110,7 +110,7 @@ pub struct SobolIndex {
 /// Number of bootstrap resamplings for the confidence intervals.
 const RESAMPLINGS: usize = 200;
 
-/// One index for each parameter, from the results of a [`design`] in its order.
+/// One index for each parameter, from the results of a `design` in its order.
 ///
 /// Groups with a failed run (NaN) are left out. `None` where fewer than eight groups remain, or where the result is
 /// constant. Formulas: Saltelli et al., table 2 (b) and (f).
