@@ -75,7 +75,7 @@ fn robertson_as_published() {
         assert!((value - expected).abs() < 1e-3 * expected, "{value} {expected}");
     }
     insta::assert_debug_snapshot!(ida.work(), @r"
-    Work {
+    IntegratorCounters {
         steps: 359,
         residuals: 506,
         jacobians: 51,
