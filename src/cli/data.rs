@@ -18,8 +18,7 @@ use bramah_syntax::diag::{Code, FileId};
 /// `Err`: the file cannot be read.
 pub(super) fn text(path: &Path, messages: &mut MessageReporter) -> Result<FileId, CommandFailure> {
     let bytes = std::fs::read(path).map_err(|e| access(path, "read", &e))?;
-    let text = String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned());
-    Ok(messages.sources.add(path.display().to_string(), text))
+    Ok(messages.sources.add_bytes(path.display().to_string(), bytes))
 }
 
 /// Reads a result or recording with all its signals. The ending names the format; without a known ending it is CSV.

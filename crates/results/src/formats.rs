@@ -37,10 +37,7 @@ pub static FORMATS: &[ResultFormat] = &[
         grows: true,
         create: |out, signals, units| Ok(Box::new(CsvWriter::with_units(out, signals, units)?)),
         read: |file| {
-            // Bytes of older encodings occur in remarks and units, where they do no harm.
-            let text =
-                String::from_utf8(file.bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned());
-            let id = file.sources.add(file.name.to_owned(), text);
+            let id = file.sources.add_bytes(file.name.to_owned(), file.bytes);
             // A text is added to the sources, so that messages can show its lines.
             read_csv(file.sources, id, file.time_column, ReadStrictness::Result)
         },

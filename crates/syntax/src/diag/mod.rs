@@ -64,6 +64,13 @@ impl Sources {
         FileId(u32::try_from(self.files.len() - 1).expect("fewer than 2^32 files"))
     }
 
+    /// Adds a text from its bytes. Those that are not UTF-8 are replaced: remarks and units of old programs often contain
+    /// such, and do no harm.
+    pub fn add_bytes(&mut self, path: String, bytes: Vec<u8>) -> FileId {
+        let text = String::from_utf8(bytes).unwrap_or_else(|e| String::from_utf8_lossy(e.as_bytes()).into_owned());
+        self.add(path, text)
+    }
+
     /// The text of an index.
     pub fn get(&self, file: FileId) -> &SourceText {
         &self.files[file.0 as usize]

@@ -202,8 +202,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         let locals = self.instance.calls().formals(callee, |c, p| !is_input(c, p));
         for f in in_order_of_use(&locals) {
             let value = self.instance.calls().declared_local(f)?;
-            let slots = self.slots_like(&value);
-            self.store(&slots, &value);
+            let slots = self.kept(&value);
             self.instance.eval.locals.push((f.name, slots));
         }
         Some(locals)
@@ -286,9 +285,7 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
         // Each changed variable starts with its value before the loop.
         for &i in changed {
             let value = self.instance.eval.locals[i].1.clone();
-            let slots = self.slots_like(&value);
-            self.store(&slots, &value);
-            self.instance.eval.locals[i].1 = slots;
+            self.instance.eval.locals[i].1 = self.kept(&value);
         }
         self.procedure_statement(s, view)?;
         Some(changed.iter().map(|&i| self.instance.eval.locals[i].1.clone()).collect())
@@ -387,11 +384,9 @@ impl<'a> ProcedureTranslator<'_, 'a, '_> {
                 let wanted: Vec<_> =
                     targets.iter().zip(values.iter()).filter_map(|(t, v)| Some((t.as_ref()?, v))).collect();
                 // All outputs are computed before one is assigned: `(a, b) := f(b, a)` reads both as they were.
-                let kept: Vec<ModelicaValue> = if wanted.len() > 1 {
-                    wanted.iter().map(|(_, v)| self.kept(v)).collect()
-                } else {
-                    wanted.iter().map(|(_, v)| (*v).clone()).collect()
-                };
+                let several = wanted.len() > 1;
+                let kept: Vec<ModelicaValue> =
+                    wanted.iter().map(|&(_, v)| if several { self.kept(v) } else { v.clone() }).collect();
                 wanted.iter().zip(&kept).try_for_each(|((t, _), v)| self.procedure_assign(t, v, view, s.span))
             }
             StatementKind::Call(call) => self.procedure_call_statement(call, view),
